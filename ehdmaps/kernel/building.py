@@ -35,7 +35,7 @@ ALWAYS = ("-std=c99", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=of
 OPTIONS = {
     "": ("-O3",),
     "debug": ("-O0", "-g"),
-    "sanitized": ("-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-omit-frame-pointer"),
+    "sanitized": ("-O0", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-omit-frame-pointer"),
     "coverage": ("-O0", "-g", "--coverage"),
 }
 """Kinds of the library, by the word that asks for them, with their options; "" is the one for users. What `coverage`

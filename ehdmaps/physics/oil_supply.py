@@ -134,14 +134,14 @@ _ORDER = 24
 _HALVINGS = 50
 
 
-def passing(flow: FloatArray | float, layer: float) -> FloatArray:
+def passing(flow: FloatArray | float, layer: float | FloatArray) -> FloatArray:
     """Part r of the flooded contact's flow that a layer lets through, its corner rounded; both in m.
 
     Parameters
     ----------
     flow : float or array
         Flow of the flooded contact over density at rest and speed [m], > 0.
-    layer : float
+    layer : float or array
         Oil layer [m], > 0; inf lets everything through.
 
     Examples
@@ -168,7 +168,7 @@ def film_ratio(root: FloatArray) -> tuple[FloatArray, FloatArray]:
     [1.2257, 1.0839, 1.0213, 1.0023, 1.0]
     """
     place = np.sqrt(1.0 - np.clip(root, 0.0, 1.0))
-    slopes = 2.0 * chebder(_polynomials()[:, 0])
+    slopes = 2.0 * _derivatives()[:, 0]
     with np.errstate(divide="ignore", invalid="ignore"):
         slope: FloatArray = np.where(place > 0.0, -0.5 * chebval(2.0 * place - 1.0, slopes) / place, 0.0)
     return _ratio(root, 0), slope
@@ -319,7 +319,7 @@ def _ratio(root: FloatArray, which: int) -> FloatArray:
     """One of the polynomials; below s = 0 its tangent."""
     polynomial = _polynomials()[:, which]
     place = np.sqrt(1.0 - np.clip(root, 0.0, 1.0))
-    end = float(chebval(1.0, chebder(polynomial)))
+    end = float(_derivatives()[:, which].sum())  # all Chebyshev polynomials are one there
     ratio: FloatArray = chebval(2.0 * place - 1.0, polynomial) - end * np.minimum(root, 0.0)
     return ratio
 
@@ -330,6 +330,12 @@ def _polynomials() -> FloatArray:
     place = 0.5 + 0.5 * np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
     solved = np.stack([_solved(float(1.0 - z**2)) for z in place]) / _solved(1.0)
     return np.asarray(chebfit(2.0 * place - 1.0, solved, _DEGREE), dtype=np.float64)
+
+
+@cache
+def _derivatives() -> FloatArray:
+    """Derivatives of the five by their argument."""
+    return np.asarray(chebder(_polynomials()), dtype=np.float64)
 
 
 def _solved(s: float) -> tuple[float, ...]:

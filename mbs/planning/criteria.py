@@ -168,14 +168,14 @@ def memory_effect(state: ClosedContact, frequency: float) -> FloatArray:
     return np.asarray(np.abs(slow - followed) / np.abs(followed))
 
 
-def supply_effect(state: ClosedContact, layer: float) -> FloatArray:
+def supply_effect(state: ClosedContact, layer: float | FloatArray) -> FloatArray:
     """By how much an oil layer changes k or c of a contact, the larger of the two as a part of the flooded value.
 
     Parameters
     ----------
     state : ClosedContact
         The flooded contact.
-    layer : float
+    layer : float or array (n, 1)
         Oil layer before the contact [m]; inf changes nothing.
 
     Notes

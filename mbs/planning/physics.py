@@ -241,9 +241,10 @@ def _supply(states: Sequence[ClosedContact], stated: Sequence[OilSupply], tolera
     name = "oil supply"
     layers = [supply.oil_layer for supply in stated if not supply.flooded]
     if not layers:
-        tried = np.geomspace(THINNEST, THICKEST, _LAYERS).tolist()
-        felt = [layer for layer in tried if any(np.any(supply_effect(one, layer) > tolerance) for one in states)]
-        words = f"none is stated; a layer below {MICROMETRE.text(max(felt, default=THINNEST), 3)} would matter"
+        tried = np.geomspace(THINNEST, THICKEST, _LAYERS)
+        sizes = np.max([np.max(supply_effect(one, tried[:, None]), axis=1) for one in states], axis=0)
+        thickest = float(np.max(tried[sizes > tolerance], initial=THINNEST))
+        words = f"none is stated; a layer below {MICROMETRE.text(thickest, 3)} would matter"
         return Verdict(name, False, math.nan, words, False)
     thinnest = min(layers)
     size, _ = _worst(states, lambda entry: supply_effect(entry, thinnest))

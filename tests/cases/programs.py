@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+from pathlib import Path
 
 import pytest
 
@@ -45,6 +46,20 @@ def needed(*names: str) -> str:
         if found := shutil.which(name):
             return found
     pytest.skip(f"{' or '.join(names)} is not on the PATH: apt-get install {PACKAGES[names[0]]}")
+
+
+def quick_compiler(folder: Path) -> str:
+    """A C compiler that does not optimise, as value of CC: of builds that are not asked how fast they run.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder for it, without blanks in its path.
+    """
+    program = folder / "quick-cc"
+    program.write_text(f'#!/bin/sh\nexec {needed("gcc", "clang")} "$@" -O0\n', encoding="ascii")
+    program.chmod(0o755)
+    return str(program)
 
 
 def held_to_run(report: pytest.TestReport | pytest.CollectReport) -> None:

@@ -1,4 +1,4 @@
-"""Every shipped scene, with fewer points and a short run-up: `mbs run` with all its analyses, and critical speeds."""
+"""Every shipped scene, with fewer points and a short run-up: `mbs run` with all its analyses."""
 
 from __future__ import annotations
 
@@ -23,11 +23,15 @@ SHORTER = (
     (r'(?<=\nhighest = )"[^"]*"', '"2 kHz"'),
 )
 
+DRY = ("n1014_rigid", "nu2210_shaft", "overhung_rotor", "two_stage")
+"""Scenes whose bearings others have too, with films: `gearbox`, `nu308_flexible`, `spindle`, `n1014_testrig`."""
+
 
 @pytest.fixture
 def shortened(tmp_path, monkeypatch):
-    """Writes a short copy of a scene, with the bodies that it reads beside it."""
+    """Writes a short copy of a scene, with the bodies that it reads beside it; of figures all but the picture."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("matplotlib.figure.Figure.savefig", lambda figure, path, **_: path.write_bytes(b"drawn"))
     for body in SYSTEMS.glob("*.nc"):
         (tmp_path / body.name).symlink_to(body)
 
@@ -44,9 +48,10 @@ def shortened(tmp_path, monkeypatch):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", shipped_systems())
 def test_every_analysis_of_a_shipped_scene(name, shortened, capsys):
-    """Of two speeds and 300 steps: whatever ends with another status than 0 says why."""
+    """Of two speeds and 600 steps: whatever ends with another status than 0 says why."""
     text = shortened(name)
-    status, out, err = run(capsys, "run", "scene.toml", "-o", "folder")
+    law = ("--law", "hertz:1.25e-5 s") if name in DRY else ()
+    status, out, err = run(capsys, "run", "scene.toml", "-o", "folder", *law)
     beyond = re.search(r"^(error: |warning: .*held at)", out, re.MULTILINE)  # a map that ends, or steps too coarse
     assert status == (1 if beyond else 0), err or out
     assert "no result" not in out and "nan" not in out.lower().split()
@@ -57,8 +62,8 @@ def test_every_analysis_of_a_shipped_scene(name, shortened, capsys):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", shipped_systems())
-def test_critical_speeds_of_a_shipped_scene(name, shortened, capsys):
-    shortened(name)
+@pytest.mark.parametrize("name", ["n1014_rigid", "nu308_rigid"])
+def test_critical_speeds_of_a_scene_without_a_sweep(name, shortened, capsys):
+    assert "[sweep]" not in shortened(name)
     status, out, err = run(capsys, "critical", "scene.toml", "--speed", "600 rpm", "1200 rpm", "2")
     assert status == 0, err or out

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import ehdmaps
-from tests.cases.programs import needed
+from tests.cases.programs import needed, quick_compiler
 
 ROOT = Path(__file__).parents[2]
 
@@ -126,7 +126,10 @@ def test_the_two_commands_of_the_readme_in_one_clone_and_an_upgrade(tmp_path):
         with ehdmaps.open_map(elsewhere / "map.nc").dataset as dataset:
             return dataset.load(), float(run(python, "-c", COMPILED, folder=elsewhere, XDG_CACHE_HOME=cache))
 
-    run(needed("bash"), ".ci/environment", folder=clone)
+    def install(*asked):
+        run(needed("bash"), ".ci/environment", *asked, folder=clone, CC=quick_compiler(tmp_path))
+
+    install()
     found = run(python, "-c", where, folder=elsewhere)
     assert Path(found.strip()) == packages / "ehdmaps" / "__init__.py"
     first, before, compiled = solved(program, elsewhere), *computed()
@@ -136,22 +139,21 @@ def test_the_two_commands_of_the_readme_in_one_clone_and_an_upgrade(tmp_path):
         (packages / name / "physics" / "__pycache__").mkdir(parents=True, exist_ok=True)
         (packages / name / "physics" / "__pycache__" / "density-12.py311.nbi").write_bytes(b"old")
         (packages / name / "physics" / "__pycache__" / "density.cpython-311.opt-1.pyc").write_bytes(b"old")
-    run(needed("bash"), ".ci/environment", "--editable", ".", folder=clone)
+    install("--editable", ".")
     assert not (packages / "ehdmaps").exists()
     assert not (packages / "mbs").exists()
     found = run(python, "-c", where, folder=elsewhere)
     assert Path(found.strip()) == clone / "ehdmaps" / "__init__.py"
     assert solved(program, elsewhere) == first
-    # back to a copy, as the first command makes it, and then to a newer one
-    run(needed("bash"), ".ci/environment", folder=clone)
-    found = run(python, "-c", where, folder=elsewhere)
-    assert Path(found.strip()) == packages / "ehdmaps" / "__init__.py"
+    # back to a copy, as the first command makes it, of a newer state
     physics = clone / "ehdmaps" / "physics"
     replaced(physics / "isotherm.py", "return alpha * p, alpha + 0.0 * p", "return alpha * p, 1.05 * alpha + 0.0 * p")
     replaced(
         physics / "closed_form.py", "return float(film), float(film * slope", "return 1.05 * film, float(film * slope"
     )
-    run(needed("bash"), ".ci/environment", folder=clone)
+    install()
+    found = run(python, "-c", where, folder=elsewhere)
+    assert Path(found.strip()) == packages / "ehdmaps" / "__init__.py"
     after, compiled = computed()
     assert compiled == 2.1
     np.testing.assert_allclose(after["film_offset"] / before["film_offset"], 1.05)  # round-off

@@ -5,6 +5,8 @@
 
 #include "hostile_numbers.h"
 
+#include "hostile_balls.h"
+
 /* A table whose loads rise with the approach from nothing; free its arrays. */
 static ehd_law_table table_of(double scale) {
     ehd_law_table table = {2 + up_to(5), 2 + up_to(5), 4 + up_to(40), log(0.1), 0.0, 1.0 / 170.0, 0.0, -4.0, 0.0, 0, 0};
@@ -468,6 +470,7 @@ int main(int count, char **arguments) {
         if (!failed) failed = elements();
         if (!failed) failed = runs();
         if (!failed) failed = tapered();
+        if (!failed && (failed = balls())) failed += 100;
         if (failed) {
             printf("check %d, round %ld\n", failed, n);
             return failed;

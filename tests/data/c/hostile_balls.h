@@ -1,9 +1,5 @@
-/* Calls ball bearings of the library with tables of many sizes, each in memory of exactly its size, and with numbers of any
- * kind, as many times as the first argument says: what is not refused must be finite, and no load may be negative. Returns
- * the number of a check that fails. */
-#include "kernel.c"
-
-#include "hostile_numbers.h"
+/* Ball bearings of the library with tables of many sizes, each in memory of exactly its size, and with numbers of any kind:
+ * what is not refused must be finite, and no load may be negative. A part of `hostile_kernel.c`. */
 
 /* A law of a ball's contact: dry, or with a film whose table is of any size; free its table. */
 static ehd_pair_law pair_law(int dry) {
@@ -73,16 +69,4 @@ static int balls(void) {
     free(start);
     free(found);
     return failed;
-}
-
-int main(int count, char **arguments) {
-    const long calls = count > 1 ? atol(arguments[1]) : 100;
-    for (long n = 0; n < calls; n++) {
-        const int failed = balls();
-        if (failed) {
-            printf("check %d, round %ld\n", failed, n);
-            return failed;
-        }
-    }
-    return 0;
 }
