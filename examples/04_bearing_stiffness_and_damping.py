@@ -19,7 +19,7 @@ from mbs.bearings.films import DryContacts, MapFilms
 from mbs.bearings.laws import hertz
 
 T, SPEED = 333.15, 1500 * np.pi / 30
-bearing = Bearing(ehdmaps.BearingGeometry.named("NU308"), profile="straight")
+bearing = Bearing(ehdmaps.BearingGeometry.named("NU308").without_clearance, profile="straight")
 oil, u = ehdmaps.Lubricant.named("FVA3"), bearing.geometry.entrainment_speed(SPEED)
 grid: Any = {"loads": np.geomspace(1e2, 1e6, 17), "entrainment_speeds": [0.8 * u, u, 1.25 * u], "temperatures": [T]}
 job = ehdmaps.Job.build(bearing=bearing.geometry, lubricant=oil, **grid, solver_options={"density": 4.5})

@@ -14,6 +14,7 @@ from ehdmaps.maps.backbone_plan import Steps
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.catalogue import estimate, estimate_from_dimensions, static_rating
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.designations.clearance import MOUNTED
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.solids import STEEL, Material
@@ -195,15 +196,20 @@ def bearing_keys(geometry: BearingGeometry) -> BearingKeys:
     InputError
         For an estimated bearing that is not what a designation, or dimensions and a rating, give.
     """
-    plain = replace(geometry, diametral_clearance=0.0)
-    if plain == BEARINGS.get(geometry.name):
+    plain, known, reach = geometry.without_clearance, BEARINGS.get(geometry.name), geometry.clearance_range
+    if known is not None and plain == known.without_clearance:
         keys: BearingKeys = {"name": geometry.name}
     elif geometry.estimated is None:
         keys = {key: _quantity(getattr(geometry, key), "m") for key in _BEARING_LENGTHS}
         keys["rollers"] = geometry.rollers
     else:
         keys = _estimate_keys(plain)
-    keys["diametral_clearance"] = _quantity(geometry.diametral_clearance, "m")
+    by_designation = reach is not None and reach.taken == MOUNTED and geometry.diametral_clearance == reach.clearance
+    if reach is None or not by_designation or "rollers" in keys:
+        keys["diametral_clearance"] = _quantity(geometry.diametral_clearance, "m")
+    elif reach.typed:
+        key = "name" if "name" in keys else "estimate"
+        keys[key] = f"{keys[key]} {reach.name}"
     return dict(_label(geometry.label)) | keys
 
 
@@ -233,7 +239,7 @@ def _estimate_keys(plain: BearingGeometry) -> BearingKeys:
 def _gives(plain: BearingGeometry, make: Callable[[], BearingGeometry]) -> bool:
     """Tell whether an estimate gives this bearing."""
     try:
-        return make() == plain
+        return make().without_clearance == plain
     except InputError:
         return False
 

@@ -10,7 +10,7 @@ from typing import ClassVar
 from ehdmaps.errors import InputError, label_problem
 from ehdmaps.physics.approach import StructuralLaw, roller_reference_depth, shipped_approaches, shipped_names
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.designations.clearance import NORMAL, ClearanceRange, Named, class_range
+from ehdmaps.physics.designations.clearance import ClearanceRange, Named, class_range
 from ehdmaps.physics.designations.reader import CYLINDRICAL
 from ehdmaps.physics.solids import Material
 
@@ -70,7 +70,7 @@ class BearingGeometry(Named):
 
     @classmethod
     def named(cls, name: str) -> BearingGeometry:
-        """One of the bearings of `BEARINGS`, with its nominal clearance of zero.
+        """One of the bearings of `BEARINGS`, with a clearance in the middle of what CN leaves a mounted one.
 
         Raises
         ------
@@ -282,8 +282,7 @@ BEARINGS: dict[str, BearingGeometry] = {
             roller_length=9e-3,
             rollers=24,
             diametral_clearance=0.0,
-            clearance_range=class_range(CYLINDRICAL, 70e-3, NORMAL, "zero"),
-        ),
+        ).delivered(class_range(CYLINDRICAL, 70e-3)),
         BearingGeometry(
             name="NU308",
             inner_raceway_diameter=52e-3,
@@ -292,7 +291,6 @@ BEARINGS: dict[str, BearingGeometry] = {
             roller_length=15e-3,
             rollers=12,
             diametral_clearance=0.0,
-            clearance_range=class_range(CYLINDRICAL, 40e-3, NORMAL, "zero"),
-        ),
+        ).delivered(class_range(CYLINDRICAL, 40e-3)),
     )
 }

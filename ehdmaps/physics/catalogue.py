@@ -26,7 +26,7 @@ from typing import NamedTuple
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
-from ehdmaps.physics.designations.clearance import NORMAL, ClearanceRange, class_range, delivered
+from ehdmaps.physics.designations.clearance import ClearanceRange, class_range, delivered
 from ehdmaps.physics.designations.families import not_known, words_for_lines
 from ehdmaps.physics.designations.reader import CYLINDRICAL, NEEDLES, ROLLERS, plain_name, read_designation
 from ehdmaps.physics.designations.tables import table
@@ -90,7 +90,7 @@ def estimate(designation: str, basic_static_rating: float | None = None) -> Bear
     Returns
     -------
     BearingGeometry
-        The bearing with `estimated` set; its clearance that of the class in the designation, else zero.
+        The bearing with `estimated` set, and a clearance by its class, see `ehdmaps.physics.designations.clearance`.
 
     Raises
     ------
@@ -130,7 +130,7 @@ def designated(designation: str) -> BearingGeometry:
     Examples
     --------
     >>> designated("NU 308 ECP").estimated is None, designated("nu 210 C3").clearance_range.words
-    (True, 'clearance in the middle of C3: 50 to 80 um by ISO 5753-1, before mounting')
+    (True, 'clearance not stated: C3 of ISO 5753-1, less a fit: 55 um, the middle of 30 to 80 um')
     """
     known = BEARINGS.get(plain_name(designation, ROLLERS))
     return estimate(designation) if known is None else known.delivered(_delivered(designation))
@@ -197,7 +197,7 @@ def estimate_from_dimensions(
     inner, outer = bore + INNER_SHARE * section, outside_diameter - OUTER_SHARE * section
     entry = Catalogue("", bore, outside_diameter, width, inner, outer)
     name = f"bearing {bore / _MM:g} x {outside_diameter / _MM:g} x {width / _MM:g} mm"
-    clearance = class_range(CYLINDRICAL, bore, NORMAL, "zero")
+    clearance = class_range(CYLINDRICAL, bore)
     return _geometry(name, entry, basic_static_rating, ERRORS.format(18, 13, 4), clearance)
 
 

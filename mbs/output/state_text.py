@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from ehdmaps.physics.designations.clearance import clearance_range
+from ehdmaps.physics.designations.clearance import STATED, clearance_range
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.units import TEMPERATURE
 from mbs.bearings.contact_report import RollingLoss
@@ -60,7 +60,7 @@ def beside_class(geometry: object) -> str:
         Geometry of a bearing.
     """
     reach = clearance_range(geometry)
-    return f" ({reach.words})" if reach is not None and reach.taken == "stated" else ""
+    return f" ({reach.words})" if reach is not None and reach.taken == STATED else ""
 
 
 def class_lines(scene: Scene) -> list[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -431,7 +430,7 @@ class ContactLaws:
 
     def of(self, bearing: Bearing, supply: OilSupply) -> BearingLaws:
         """The laws of the contacts of a bearing with an oil supply; those of the same contacts are made once."""
-        key = dataclasses.replace(bearing.geometry, diametral_clearance=0.0), supply
+        key = bearing.geometry.without_clearance, supply
         if key not in self._made:
             self._made[key] = BearingLaws(self, bearing, supply)
         return self._made[key]

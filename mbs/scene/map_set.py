@@ -7,7 +7,6 @@ makes a law of its own, to be compared.
 
 from __future__ import annotations
 
-import dataclasses
 import itertools
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
@@ -381,7 +380,7 @@ def _from_table(scene: Scene, inlet_heat: bool, known: Sequence[EHDMap], make: C
             continue
         there = next((emap for emap in known if suits(emap, spec.geometry)), None)
         if there is None:
-            plain = dataclasses.replace(spec.geometry, diametral_clearance=0.0)
+            plain = spec.geometry.without_clearance
             there = make(plain, scene.lubricant, speeds_of_laws(plain, scene), temperatures, inlet_heat)
         maps.append(there)
     return MapSet(maps)

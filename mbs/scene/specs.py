@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol, Self
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.designations.clearance import MOUNTED
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import CrownedProfile, TabulatedProfile
 from mbs.bearings.thermal import GivenTemperatures, HeatPaths, Mounting
@@ -248,6 +249,13 @@ class BearingSpec:
     slices_coupled: bool = False
     pocket_clearance: float | None = None
     between_ribs: TaperedSpec | None = None
+
+    def __post_init__(self) -> None:
+        reach = self.geometry.clearance_range
+        fitted = self.mounting is not None and self.mounting.shaft is not None
+        if fitted and reach is not None and reach.taken == MOUNTED:
+            # what the fit takes of a clearance by its class is known then, and taken in operation
+            object.__setattr__(self, "geometry", self.geometry.delivered(reach.unmounted))
 
     @property
     def changes_in_operation(self) -> bool:

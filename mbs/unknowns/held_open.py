@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ehdmaps.physics.designations.clearance import clearance_range
+from ehdmaps.physics.designations.clearance import STATED, clearance_range
 from mbs.scene.changes import warmed, with_clearance_of
 from mbs.scene.fields import MICROMETRE
 from mbs.scene.scene import Scene
@@ -51,10 +51,10 @@ def _clearances(scene: Scene) -> Iterator[Unknown]:
             continue
         name, stated = f"clearance of {entry.name}", tolerance_of(scene, "clearance", entry.name)
         reach = clearance_range(entry.geometry)
-        if stated is None and reach is not None and reach.taken != "stated":
-            least, largest = reach.mounted
+        if stated is None and reach is not None and reach.taken != STATED:
+            least, largest = reach.reach
             held = f"{1e6 * least:.4g} to {MICROMETRE.text(largest)}"
-            why = f"not stated: {reach.name} of ISO 5753-1, less a fit"
+            why = reach.why
         else:
             half = LOOSER if stated is None else stated.half_width(value)
             least, largest = value - half, value + half

@@ -68,7 +68,7 @@ def stiffness(point: ForceAtPoint) -> float:
 
 def main() -> None:
     """Print the table."""
-    bearing = Bearing.named("NU308")
+    bearing = Bearing.named("NU308", clearance=0.0)
     if len(sys.argv) > 1:
         law = ehdmaps.open_map(sys.argv[1]).law("series", "clamp")
     else:

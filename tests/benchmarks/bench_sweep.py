@@ -111,7 +111,7 @@ def slice_table(scene: Scene, law: str, emap: EHDMap) -> None:
 def angle_table(scene: Scene, law: str, emap: EHDMap) -> None:
     """Print the scatter over a pitch of the slower cage at the middle speed."""
     system = made(scene, law, emap)
-    bearing = Bearing.named("NU308")
+    bearing = Bearing.named("NU308", clearance=0.0)
     slowest = min(abs(body.spin) for body in scene.bodies if body.spin)
     pitch = 2.0 * math.pi / (bearing.geometry.rollers * abs(bearing.cage_angle(slowest, 0.0)))
     found = [sweep(system, np.array([MIDDLE]), pitch * part / ANGLES) for part in range(ANGLES)]

@@ -30,7 +30,7 @@ def single_law(side):
 
 
 def bearing(**keywords):
-    return Bearing.named("NU308", **keywords)
+    return Bearing.named("NU308", **{"clearance": 0.0, **keywords})
 
 
 LAWS = {

@@ -22,7 +22,7 @@ from ehdmaps.physics.moes import film_from_moes, moes_groups
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import Status, contact_solution
 
-NU308 = BearingGeometry.named("NU308")
+NU308 = BearingGeometry.named("NU308").without_clearance
 OIL = Lubricant.named("FVA3")
 CONTACTS = NU308.contacts(STEEL, "iso16281")
 LINE = LineContact("line", 5.515e-3, STEEL, "half_space", reference_depth=5e-3)

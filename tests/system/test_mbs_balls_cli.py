@@ -41,9 +41,9 @@ def numbers(out, label):
 
 
 def test_one_point(capsys, here) -> None:
-    status, out, err = run(capsys, *LOADED, "--law", "hertz")
+    status, out, err = run(capsys, *LOADED, "--law", "hertz", "--clearance", "0 um")
     assert (status, err) == (0, "")
-    geometry = ball_estimate("6208")
+    geometry = ball_estimate("6208").with_clearance(0.0)
     force = BallForce(geometry, dry_law(geometry))
     point = BallPoint.at(force, (500.0, 2000.0, 0.0), 3000.0 * RPM, oil=Lubricant.named("FVA3"))
     assert numbers(out, "stiffness") == pytest.approx([1e-6 * point.stiffness[i, i] for i in (1, 2, 0)], rel=1e-4)
@@ -98,7 +98,7 @@ def test_films_follow_the_speed(capsys, here) -> None:
 @pytest.mark.parametrize("law", ["films", "table"])
 def test_laws_with_films_are_read(capsys, here, law) -> None:
     """Films move the contact angle of a bearing without clearance, and damp; at rest there are none."""
-    command = (*LOADED[:-2], "--temperature", "60 degC")
+    command = (*LOADED[:-2], "--temperature", "60 degC", "--clearance", "0 um")
     status, out, err = run(capsys, *command, "--speed", "3000 rpm", "--law", law)
     assert status == 0 and "read from the film table" in out
     assert "3000 rpm: films read from the table at" in err and "solved" not in err
@@ -165,7 +165,7 @@ def test_outer_ring_turns(capsys, here) -> None:
 
 
 def test_clearance_and_tilt(capsys, here) -> None:
-    tight = numbers(run(capsys, *LOADED)[1], "mean contact angle")
+    tight = numbers(run(capsys, *LOADED, "--clearance", "0 um")[1], "mean contact angle")
     loose = numbers(run(capsys, *LOADED, "--clearance", "20 um")[1], "mean contact angle")
     assert loose[0] > tight[0] + 1.0
     out = run(capsys, *LOADED, "--tilts")[1]

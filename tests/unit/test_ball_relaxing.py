@@ -28,7 +28,7 @@ FREQUENCIES = np.array([1e-3, 30.0, 1e3, 5e3, 2e4])
 
 def bearing(name, rpm, pose, turns=True):
     """Force, K and C (6, 6), balls, speed, and what relaxes, with the films of a speed."""
-    geometry, speed = ball_estimate(name), rpm * math.pi / 30.0
+    geometry, speed = ball_estimate(name).with_clearance(0.0), rpm * math.pi / 30.0
     films = ball_films(geometry, OIL, geometry.entrainment_speed(speed, 0.0), KELVIN, solves=False)
     force, conditions = BallForce(geometry, films.law), {"inner_speed": speed if turns else 0.0}
     _, K, C = force(pose, **conditions)

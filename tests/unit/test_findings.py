@@ -194,7 +194,7 @@ def test_the_worst_of_several_places():
 def test_shoulder_of_a_6208(height, monkeypatch):
     """The axial load at which the ellipse of Hertz ends where the groove does, by one angle of both contacts alone."""
     monkeypatch.setattr("mbs.bearings.balls.ball_findings.SHOULDERS", (height, 0.35))
-    geometry = ball_estimate("6208")
+    geometry = ball_estimate("6208").with_clearance(0.0)
     force = BallForce(geometry, dry_law(geometry, STEEL))
 
     def told(load):

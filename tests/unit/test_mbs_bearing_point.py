@@ -29,7 +29,7 @@ WARM = 313.15
 
 
 def dry_point(name, load, speed=100.0, **options):
-    bearing = Bearing.named(name, **options)
+    bearing = Bearing.named(name, **{"clearance": 0.0, **options})
     films = FormulaFilms(bearing.geometry.contacts(STEEL, "iso16281"), OIL)
     return bearing_point(BearingForce(bearing, laws.hertz(bearing)), films, load, speed, WARM)
 
@@ -130,13 +130,15 @@ def test_outside_the_map_is_said_by_axis_and_value():
         f"temperature of {hot + 10.0 - 273.15:.4g} degC is outside",
     ):
         assert words in found
-    assert outside_map(laws.hertz(Bearing.named("NU308")), 1e9, 1e3, 1e3) == []
+    assert outside_map(laws.hertz(Bearing.named("NU308", clearance=0.0)), 1e9, 1e3, 1e3) == []
 
 
 def test_a_film_that_fades_is_said():
     law = map_law()
     slow = law.speed_range[0]
-    assert fading(law, slow) == fading(law, 0.0) == fading(laws.hertz(Bearing.named("NU308")), 1e-3) == ""
+    assert (
+        fading(law, slow) == fading(law, 0.0) == fading(laws.hertz(Bearing.named("NU308", clearance=0.0)), 1e-3) == ""
+    )
     assert fading(law, 0.5 * slow).startswith(
         f"entrainment speed of {0.5 * slow:.4g} m/s is below the lowest mapped one, {slow:.4g} m/s: stiffness"
     )

@@ -188,7 +188,7 @@ def test_formula_films_on_a_layer():
 def test_formula_law_on_a_layer_ends_where_the_gap_is_wider():
     ranges = {"load": (1e3, 1e5), "entrainment_speed": (1.0, 2.0), "temperature": (310.0, 320.0)}
     supply = OilSupply(2e-6)
-    it = laws.formula(Bearing.named("NU308"), OIL, **ranges, supply=supply)
+    it = laws.formula(Bearing.named("NU308", clearance=0.0), OIL, **ranges, supply=supply)
     assert it.supply is supply
     w = it.at(1.5, 315.0)([-4.1e-6, -3.5e-6], [0.0, 0.0])[0]
     assert w[0] == 0.0 < w[1]

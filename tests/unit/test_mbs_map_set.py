@@ -33,7 +33,7 @@ from mbs.scene.reader import parse_scene
 from tests.cases.laws import dataset_of
 
 TEXT = (resources.files("mbs") / "systems" / "nu308_rigid.toml").read_text(encoding="utf-8").replace("= 41", "= 5")
-N1014 = BearingGeometry.named("N1014")
+N1014 = BearingGeometry.named("N1014").without_clearance
 
 
 def two_types():

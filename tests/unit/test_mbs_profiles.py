@@ -19,7 +19,7 @@ from mbs.bearings.laws import hertz
 from mbs.scene.reader import parse_scene
 
 TEXT = (resources.files("mbs") / "systems" / "nu308_rigid.toml").read_text(encoding="utf-8")
-NU308 = BearingGeometry.named("NU308")
+NU308 = BearingGeometry.named("NU308").without_clearance
 HALF = 0.5 * NU308.roller_length
 
 

@@ -209,7 +209,7 @@ class TestOutsideTheMap:
 
 class TestSpeedTables:
     def tables(self):
-        bearing = Bearing.named("NU308").with_slices(5)
+        bearing = Bearing.named("NU308", clearance=0.0).with_slices(5)
         return SpeedTables(bearing, FlatLaw(map_law()), TEMPERATURE, (1.0, 0.0))
 
     def room(self):
@@ -259,7 +259,7 @@ class TestSpeedTables:
         slots, sound, _ = tables.prepare(speeds, nodes, weights, *room)
         assert slots.tolist() == [NODES] * 4
         assert sound.all()
-        element, films = BearingForce(Bearing.named("NU308").with_slices(5), map_law()), Films([tables])
+        element, films = BearingForce(Bearing.named("NU308", clearance=0.0).with_slices(5), map_law()), Films([tables])
         films.tables[0], films.numbers[0] = room
         for speed, weight in zip(speeds[1:4], weights[1:4], strict=True):
             own, (numbers, cells) = element.at(speed, TEMPERATURE), films.blend(0, NODES, weight)

@@ -383,7 +383,7 @@ def test_a_check_tells_what_will_be_solved(tmp_path, capsys):
     assert "with weight (9.807 m/s2 along -y)" in said
     assert f"shaft rotor: 340.8 mm, {MASSES[0]:.4g} kg and discs of {MASSES[1]:.4g} kg, modes up to 5000 Hz" in said
     assert "14 coordinates in all" in said
-    assert "bearing right: NU206 (estimated), 13 rollers, clearance 0 um, rotor:right at 315 mm in ground" in said
+    assert "bearing right: NU206 (estimated), 13 rollers, clearance 22.5 um, rotor:right at 315 mm in ground" in said
     assert "mbs statics, modes, report: one speed" in said
     assert "mbs sweep: not yet: no speeds" in said and "mbs hammer: not yet: [[inputs]] missing" in said
     path.write_text(SHORT.replace('"30 mm"', '"9 m"', 1).replace('"NU206"', '"NU1"'))

@@ -16,7 +16,7 @@ from mbs.scene.contact_laws import read_law
 from mbs.scene.reader import read_scene
 from tests.cases.commands import run
 
-NU308 = Bearing.named("NU308")
+NU308 = Bearing.named("NU308", clearance=0.0)
 LENGTH = NU308.geometry.roller_length
 POSE = np.array([0.0, 25e-6, 8e-6, 0.0, 2e-4, -1e-4])
 VELOCITY = np.array([0.0, -2e-3, 1e-3, 0.0, 0.01, 0.02])

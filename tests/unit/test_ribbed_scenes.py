@@ -116,7 +116,7 @@ def test_mbs_check_says_how_ribs_carry(capsys, tmp_path) -> None:
     scene = tmp_path / "rotor.toml"
     scene.write_text(text("NJ210", 'mirrored = true\naxial_clearance = "30 um"', force="-1500 N"), encoding="utf-8")
     status, out, _ = commands.run(capsys, "check", str(scene))
-    assert status == 0 and "16 rollers, clearance 0 um, ribs carry along -x, axial clearance 30 um, rotor in" in out
+    assert status == 0 and "16 rollers, clearance 35 um, ribs carry along -x, axial clearance 30 um, rotor in" in out
 
 
 def test_a_shaft_held_along_x_has_bearings_without_ribs() -> None:

@@ -104,7 +104,7 @@ def test_another_structural_law_has_the_same_films(made):
 def test_a_bearing_says_what_it_costs(made):
     """Against errors of all slices alike, of which the bearing's has to be the same, beside the numerical ones."""
     emap = open_map(made[1])
-    bearing = Bearing.named("NU308")
+    bearing = Bearing.named("NU308", clearance=0.0)
     load = 5e3, 0.0
     for k, c, words in ((0.02, 0.3, r"wrong by 2(\.[0-2])? %, damping by 3[0-3] %"), (0.001, 0.002, None)):
         even = emap.dataset.copy(deep=True)

@@ -93,7 +93,7 @@ CASES = [
 def test_stiffness_of_fast_bearings_by_another_program(case) -> None:
     """A balance by Jones and Harris of another author, with closed formulas, printed with three to four digits."""
     name, radial, axial, inner, outer, along, across, cage = case
-    geometry = ball_estimate(name)
+    geometry = ball_estimate(name).with_clearance(0.0)
     point = BallPoint.at(BallForce(geometry, dry_law(geometry)), (axial, radial, 0.0), inner * RPM, outer * RPM)
     assert point.stiffness[1, 1] == pytest.approx(1e6 * along, rel=2.5e-3)
     assert point.stiffness[0, 0] == pytest.approx(1e6 * across, rel=2.5e-3)
@@ -119,7 +119,7 @@ def test_jones_balance(name, material, axial, inner, outer) -> None:
 
     Differences of 20 nm: their second order, and the residual of scipy's root over the step, leave 2e-5 of K.
     """
-    geometry, speeds = ball_estimate(name), (inner * RPM, outer * RPM)
+    geometry, speeds = ball_estimate(name).with_clearance(0.0), (inner * RPM, outer * RPM)
     force = BallForce(geometry, dry_law(geometry, material), material)
     point = BallPoint.at(force, (axial, 0.0, 0.0), *speeds)
 

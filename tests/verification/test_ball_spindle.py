@@ -85,7 +85,7 @@ class TestRoss:
 
 def harris(name: str, axial: float, speed: float) -> tuple[float, float]:
     """Axial force of a bearing [N] and its stiffness [N/m] under an axial displacement, by velocities in space."""
-    geometry = ball_estimate(name)
+    geometry = ball_estimate(name).with_clearance(0.0)
 
     def force(u: float) -> float:
         return -geometry.balls * balls_in_space(geometry, np.array([u, 0.0, 0.0, 0.0, 0.0, 0.0]), speed, only=1)[0][0]

@@ -15,7 +15,7 @@ from tests.cases.bearings import AT, PLANE, bearing, equilibrium, map_law, singl
 
 
 def hertz_force(name, slices=41, **keywords):
-    each = Bearing.named(name, slices=slices, **keywords)
+    each = Bearing.named(name, slices=slices, **{"clearance": 0.0, **keywords})
     return BearingForce(each, laws.hertz(each))
 
 

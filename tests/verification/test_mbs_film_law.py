@@ -39,7 +39,7 @@ OIL = Lubricant.roelands(viscosity=0.28, pressure_viscosity=22e-9, density=890.0
 
 @pytest.fixture(scope="module")
 def emap():
-    nu308 = BearingGeometry.named("NU308")
+    nu308 = BearingGeometry.named("NU308").without_clearance
     u = nu308.entrainment_speed(1.0, 0.0) * SPEED
     job = Job.build(
         lubricant=OIL, bearing=nu308, loads=[50.0, 3e5], entrainment_speeds=[0.7 * u, 1.4 * u], temperatures=[WARM]

@@ -113,7 +113,7 @@ def test_at_rest_and_without_rolling_forces(reynolds_map):
 
 
 OIL = Lubricant.barus(viscosity=0.08, pressure_viscosity=0.0, density=880.0).at(WARM)
-IDLE, U = Bearing.named("NU308", slices=1), 4.0
+IDLE, U = Bearing.named("NU308", clearance=0.0, slices=1), 4.0
 RIGID_LOAD = 4.894968
 """w h/(eta u R) of the rigid film; 1e-6 of it is what its digits bound below."""
 

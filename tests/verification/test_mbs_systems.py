@@ -403,7 +403,7 @@ class TestFrequencyOverSpeed:
 
 
 def test_bearing_element_follows_speed_and_angle():
-    bearing = Bearing.named("NU308")
+    bearing = Bearing.named("NU308", clearance=0.0)
     element = BearingElement(
         "b", "a", "ground", bearing, BearingForce(bearing, _hertz(bearing)), 313.15, start_angle=0.1
     )

@@ -1,15 +1,18 @@
-"""Radial clearance of a bearing as it is delivered: the classes C2 to C5 of ISO 5753-1, by the bore.
+"""Radial clearance of a bearing whose clearance is not stated: by the class of its designation, C2 to C5, else CN.
 
-A designation with a class has the middle of its range, which is a guess within it. One without a class, and without a
-clearance that is stated, has none here: bearings are delivered with CN then, of which fits and heat take most, or all.
+Makers deliver a class of ISO 5753-1. A fit and the warmth of the inner ring take a part of it; where the fit is not
+known, a mounted bearing may have anything from some way below the least clearance of its class, but not below zero, up
+to the largest. The middle of that is taken, and the range told beside it.
 
 Needle bearings with an inner ring have the classes of cylindrical roller bearings. Without one the shaft makes the
-clearance. That of angular contact and of tapered bearings is set when they are mounted.
+clearance: the raceway of series 49 has F6, cages run in housings G6, and shafts for a normal clearance have h5. That of
+angular contact and of tapered bearings is set when they are mounted.
 
 References
 ----------
 ISO 5753-1, Rolling bearings - Internal clearance - Part 1: Radial internal clearance for radial bearings, cylindrical
 bore: values as printed in makers' tables, which agree (SKF for rollers; SKF, NSK, Fujian Huafeng for balls).
+ISO 286-2: F6, G6 and h5. Which of them: catalogues of INA and IKO for cages, of SKF for series 49.
 """
 
 from __future__ import annotations
@@ -27,58 +30,95 @@ NORMAL = "CN"
 
 _BALLS, _ROLLERS = table("clearance")["balls"], table("clearance")["rollers"]
 _TABLES = {DEEP_GROOVE: _BALLS, CYLINDRICAL: _ROLLERS, NEEDLE: _ROLLERS}
-_FIT, _FITS = 20e-6, {DEEP_GROOVE: 10e-6}
-"""What fits and warmth take of a clearance at most, where neither is stated [m]: a rule of our own. k5 in the ring of
-class P0 with a bore of 40 mm has 2 to 25 um of interference, of which three quarters arrive at the raceway."""
+_FIT = {CYLINDRICAL: 20e-6, NEEDLE: 20e-6, DEEP_GROOVE: 10e-6}
+"""Most of a clearance that fits and warmth take where they are not stated [m]: a rule of our own. k5 in the ring of
+class P0 with a bore of 40 mm has 2 to 25 um of interference, of which three quarters arrive at the raceway; rings of
+that bore lose 4 um where the inner one is 5 K warmer."""
+
+# largest diameter [mm]; F6, G6: least and largest deviation of a hole; h5: tolerance of a shaft below its diameter [um]
+_SHAFTS = (
+    (10, 13, 22, 5, 14, 6),
+    (18, 16, 27, 6, 17, 8),
+    (30, 20, 33, 7, 20, 9),
+    (50, 25, 41, 9, 25, 11),
+    (80, 30, 49, 10, 29, 13),
+    (120, 36, 58, 12, 34, 15),
+)
 _MOUNTED = {
     ANGULAR: "the play of angular contact bearings is set when they are mounted",
     TAPERED: "the play of tapered bearings is set when they are mounted",
 }
 _NO_RING = "without an inner ring, shaft and needles make the clearance"
 
+MOUNTED, DELIVERED, STATED = "mounted", "delivered", "stated"
+"""What a bearing has of a range: what a fit that is not known leaves of it; all of it, before it is mounted; neither,
+for a clearance that is stated beside it counts."""
+
 
 class ClearanceRange(NamedTuple):
-    """Radial clearance that a bearing may have as it is delivered, not mounted.
+    """Radial clearance that a bearing may have by its designation.
 
     Attributes
     ----------
     name : str
-        Class of ISO 5753-1.
+        Class of ISO 5753-1; or the tolerances of what makes the clearance, such as "F6/h5".
     least, largest : float
-        Range of the class [m].
-    taken : {"middle", "zero", "stated"}
-        What the bearing has: the middle of the class of its designation; none, where neither a class nor a clearance
-        is stated; or a clearance that is stated beside a class, which counts.
+        Range before mounting [m].
     fit : float
-        What fits and warmth take of it at most [m].
+        Most that fits and warmth take of it [m].
+    typed : bool
+        Whether the class stands in the designation.
+    taken : {"mounted", "delivered", "stated"}
+        What the bearing has of it, see `MOUNTED`.
     """
 
     name: str
     least: float
     largest: float
-    taken: str
-    fit: float = 20e-6
+    fit: float
+    typed: bool = False
+    taken: str = MOUNTED
 
     @property
-    def mounted(self) -> tuple[float, float]:
-        """Range of a bearing that is mounted with a fit that is not known [m]."""
-        return max(self.least - self.fit, 0.0), self.largest
+    def reach(self) -> tuple[float, float]:
+        """Least and largest clearance that the bearing may have [m]."""
+        least = max(self.least - self.fit, 0.0) if self.taken == MOUNTED else self.least
+        # 30 um less 20 um are 1e-5 m, and not one bit beside
+        return float(f"{least:.9g}"), self.largest
 
     @property
     def clearance(self) -> float:
-        """Clearance that a bearing has by its designation alone [m]."""
-        # a middle of 24 um is 24e-6, and not one bit beside
-        return float(f"{0.5 * (self.least + self.largest):.9g}") if self.taken == "middle" else 0.0
+        """Clearance that is taken where none is stated, the middle [m]."""
+        return float(f"{0.5 * sum(self.reach):.9g}")
+
+    @property
+    def unmounted(self) -> ClearanceRange:
+        """The same for a bearing whose fit is known: what it has before it is mounted."""
+        return self._replace(taken=DELIVERED) if self.taken == MOUNTED else self
+
+    @property
+    def source(self) -> str:
+        """Name of what gives the range."""
+        return f"{self.name} of ISO {'5753-1' if self.name in CLASSES else '286-2'}"
+
+    @property
+    def why(self) -> str:
+        """Reason why the clearance is open."""
+        less = ", less a fit" if self.taken == MOUNTED and self.fit else ""
+        return f"not stated: {self.source}{less}"
 
     @property
     def words(self) -> str:
         """Clearance that was taken, and the range beside it."""
-        reach = f"{1e6 * self.least:.4g} to {1e6 * self.largest:.4g} um by ISO 5753-1, before mounting"
-        if self.taken == "middle":
-            return f"clearance in the middle of {self.name}: {reach}"
-        if self.taken == "zero":
-            return f"no clearance, an assumption: {self.name} would be {reach}"
-        return f"clearance as stated: {self.name} of the designation would be {reach}"
+        delivered = f"{_reach(self.least, self.largest)} by ISO 5753-1, before mounting"
+        if self.taken == STATED:
+            return f"clearance as stated: {self.name} of the designation would be {delivered}"
+        return f"clearance {self.why}: {1e6 * self.clearance:.4g} um, the middle of {_reach(*self.reach)}"
+
+
+def _reach(least: float, largest: float) -> str:
+    """A range in words."""
+    return f"{1e6 * least:.4g} to {1e6 * largest:.4g} um"
 
 
 class Named:
@@ -103,7 +143,7 @@ class Named:
         return {name: value for name, value in values.items() if value is not None}
 
     def delivered(self, clearance: ClearanceRange | None) -> Self:
-        """The same bearing with the clearance of its designation, and the range of it."""
+        """The same bearing with a clearance that is not stated: the middle of a range, zero without one [m]."""
         return self._with(0.0 if clearance is None else clearance.clearance, clearance)
 
     def with_clearance(self, clearance: float) -> Self:
@@ -112,6 +152,11 @@ class Named:
             return self
         return self._with(clearance, stated(getattr(self, "clearance_range", None)))
 
+    @property
+    def without_clearance(self) -> Self:
+        """The same bearing with a clearance of zero: bearings that agree in it have the same contacts."""
+        return self._with(0.0, None)
+
     def _with(self, clearance: float, reach: ClearanceRange | None) -> Self:
         """The same bearing with a clearance and its range."""
         own: Any = self
@@ -119,7 +164,7 @@ class Named:
         return changed
 
 
-def class_range(kind: str, bore: float, name: str, taken: str = "middle") -> ClearanceRange | None:
+def class_range(kind: str, bore: float, name: str = NORMAL, *, typed: bool = False) -> ClearanceRange | None:
     """Range of a class of clearance; None for kinds and bores that have no classes.
 
     Parameters
@@ -130,23 +175,46 @@ def class_range(kind: str, bore: float, name: str, taken: str = "middle") -> Cle
         Bore [m].
     name : str
         Class, one of `CLASSES`.
-    taken : str
-        What the bearing has of it, see `ClearanceRange`.
+    typed : bool
+        Whether the class stands in the designation.
 
     Examples
     --------
     >>> class_range(DEEP_GROOVE, 40e-3, "C3").words
-    'clearance in the middle of C3: 15 to 33 um by ISO 5753-1, before mounting'
+    'clearance not stated: C3 of ISO 5753-1, less a fit: 19 um, the middle of 5 to 33 um'
     """
     for largest_bore, *limits in _TABLES.get(kind, ()):
         if bore <= 1e-3 * largest_bore * (1.0 + 1e-9):
             place = 2 * CLASSES.index(name)
-            return ClearanceRange(name, limits[place] / 1e6, limits[place + 1] / 1e6, taken, _FITS.get(kind, _FIT))
+            return ClearanceRange(name, limits[place] / 1e6, limits[place + 1] / 1e6, _FIT[kind], typed)
     return None
 
 
-def delivered(designation: str, bore: float | None) -> ClearanceRange | None:
-    """Clearance of a bearing by its designation; None for kinds that have no classes.
+def shaft_range(kind: str, raceway: float) -> ClearanceRange | None:
+    """Range of needles whose raceway is a shaft of h5; None for diameters beyond those of needle bearings.
+
+    Parameters
+    ----------
+    kind : str
+        Needle bearing, of series 49, or needle cage.
+    raceway : float
+        Diameter of the shaft [m].
+
+    Examples
+    --------
+    >>> shaft_range(NEEDLE, 48e-3).words
+    'clearance not stated: F6/h5 of ISO 286-2, less a fit: 28.5 um, the middle of 5 to 52 um'
+    """
+    for largest, *hole, shaft in _SHAFTS:
+        if raceway <= 1e-3 * largest * (1.0 + 1e-9):
+            if kind == NEEDLE:  # whose outer ring sits in a housing
+                return ClearanceRange("F6/h5", hole[0] / 1e6, (hole[1] + shaft) / 1e6, _FIT[kind])
+            return ClearanceRange("G6/h5", hole[2] / 1e6, (hole[3] + shaft) / 1e6, 0.0)
+    return None
+
+
+def delivered(designation: str, bore: float | None, raceway: float = 0.0) -> ClearanceRange | None:
+    """Clearance of a bearing by its designation; None for kinds whose clearance is set when they are mounted.
 
     Parameters
     ----------
@@ -154,6 +222,8 @@ def delivered(designation: str, bore: float | None) -> ClearanceRange | None:
         Designation as it was typed.
     bore : float or None
         Bore of the inner ring [m]; None where there is no ring.
+    raceway : float
+        Diameter of the shaft, where that is the raceway [m].
 
     Raises
     ------
@@ -162,15 +232,15 @@ def delivered(designation: str, bore: float | None) -> ClearanceRange | None:
 
     Examples
     --------
-    >>> round(1e6 * delivered("6208 C3", 40e-3).clearance, 3), delivered("6208", 40e-3).clearance
-    (24.0, 0.0)
+    >>> [round(1e6 * delivered(name, 40e-3).clearance, 3) for name in ("6208", "6208 C3", "NU208")]
+    [10.0, 19.0, 27.5]
     """
     found = read_designation(designation)
     if found is None:
         return None
     where, name = f"bearing designation: got {short(designation)}", found.clearance
     if not name:
-        return None if bore is None else class_range(found.kind, bore, NORMAL, "zero")
+        return shaft_range(found.kind, raceway) if bore is None else class_range(found.kind, bore)
     why = _MOUNTED.get(found.kind, "" if bore is not None else _NO_RING)
     if why:
         raise InputError(f"{where}; allowed: no class of radial clearance: {why}; leave {name} out")
@@ -179,7 +249,7 @@ def delivered(designation: str, bore: float | None) -> ClearanceRange | None:
             f"{where}; allowed: one of the classes {', '.join(CLASSES)} of ISO 5753-1; state the clearance and leave "
             f"{name} out"
         )
-    return class_range(found.kind, float(bore or 0.0), name)
+    return class_range(found.kind, float(bore or 0.0), name, typed=True)
 
 
 def clearance_range(geometry: object) -> ClearanceRange | None:
@@ -202,4 +272,4 @@ def stated(beside: ClearanceRange | None) -> ClearanceRange | None:
     beside : ClearanceRange or None
         Clearance by the designation.
     """
-    return None if beside is None or beside.taken == "zero" else beside._replace(taken="stated")
+    return beside._replace(taken=STATED) if beside is not None and beside.typed else None

@@ -85,7 +85,8 @@ def ball_estimate(designation: str, basic_static_rating: float | None = None) ->
     Returns
     -------
     BallGeometry
-        The bearing with `estimated` set; its clearance that of the class in the designation, else zero.
+        The bearing with `estimated` set, and a clearance by its class, see `ehdmaps.physics.designations.clearance`;
+        angular contact bearings have none.
 
     Raises
     ------

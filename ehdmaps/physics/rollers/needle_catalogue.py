@@ -112,7 +112,7 @@ def needle_estimate(designation: str, basic_static_rating: float | None = None) 
         count,
         0.0,
         estimated=f"inner geometry estimated from {basis}: {errors}",
-    ).delivered(delivered(designation, _bore(name)))
+    ).delivered(delivered(designation, _bore(name), inner))
 
 
 def _bore(name: str) -> float | None:

@@ -403,7 +403,7 @@ def _table_map(
     turning = [u for u in entrainment if u > 0.0]
     slow, fast = (min(turning), max(turning)) if turning else SPEEDS
     return table_map(
-        dataclasses.replace(geometry, diametral_clearance=0.0),
+        geometry.without_clearance,
         oil,
         entrainment_speeds=(slow if len(turning) == len(speeds) else min(slow, SPEEDS[0]), fast),
         temperatures=(temperature, temperature),

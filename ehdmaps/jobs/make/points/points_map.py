@@ -115,7 +115,7 @@ class PointsRequest:
         """Name of the map's file."""
         plain = "".join(letter if letter.isalnum() or letter in "-." else "_" for letter in self.oil.title)
         reach = self.bearing.clearance_range
-        beside = f"_{reach.name}" if reach is not None and reach.taken == "middle" else ""
+        beside = f"_{reach.name}" if reach is not None and reach.typed else ""
         return f"{self.bearing.name}{beside}_{plain}.nc"
 
 
