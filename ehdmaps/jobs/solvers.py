@@ -14,7 +14,7 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.heat import ISOTHERMAL, PHYSICS, THERMAL
 from ehdmaps.physics.rheology import SHEAR_LIMITS, SHEARS
-from ehdmaps.physics.solution import ContactSolver
+from ehdmaps.physics.solution import ContactSolver, ContactSolverDefaults
 from ehdmaps.units import Display, short
 
 if TYPE_CHECKING:
@@ -246,8 +246,8 @@ SOLVERS: Mapping[str, SolverEntry] = {
 }
 SOLVER_NAMES = tuple(SOLVERS)
 
-_MEMBERS = {name: entry for name, entry in vars(ContactSolver).items() if not name.startswith("_")}
-"""What a `ContactSolver` has."""
+_MEMBERS = [name for of in (ContactSolver, ContactSolverDefaults) for name in vars(of) if not name.startswith("_")]
+"""Members of a `ContactSolver`."""
 
 
 def read_options(name: str, table: Table) -> dict[str, Any]:
@@ -316,7 +316,8 @@ def complete(solver: ContactSolver) -> ContactSolver:
             "an instance of a class that inherits from ehdmaps.physics.solution.ContactSolverDefaults"
         )
     # looked up without a call: a version may take a program to find out; what the Protocol writes down is no answer
-    lacking = [name for name, stub in _MEMBERS.items() if inspect.getattr_static(solver, name, stub) is stub]
+    stubs = {name: vars(ContactSolver).get(name, _MEMBERS) for name in _MEMBERS}
+    lacking = [name for name in _MEMBERS if inspect.getattr_static(solver, name, stubs[name]) is stubs[name]]
     if lacking:
         kind = type(solver).__name__
         raise InputError(

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from enum import IntEnum
 from typing import Protocol
 
@@ -216,7 +216,7 @@ class FilmSpectrum:
 
 
 @dataclass(frozen=True)
-class ContactSolution:
+class ContactSolution(FilmSolution):
     """One point of a map: films, approach, stiffness and damping of one contact, per unit length.
 
     Attributes
@@ -227,51 +227,101 @@ class ContactSolution:
         k = dw/d(approach) [N/m2].
     damping : float
         c [N s/m2].
-    film_offset_error, film_compliance_error, stiffness_error, damping_error : float
-    central_film_error, minimum_film_error, max_pressure_error, rolling_force_error, mass_flow_error : float
+    stiffness_error, damping_error : float
         Estimated relative numerical errors.
-    loss_compliance_error : float
-        The same, positive where the error of the loss has the sign of that of the film compliance: the two can cancel
-        in the damping.
 
-    The other attributes are those of `FilmSolution`.
+    The other attributes are those of `FilmSolution`; errors have no sign here but that of the loss, which is positive
+    where it has the sign of the error of the film compliance: the two can cancel in the damping.
     """
 
-    status: Status
-    reason: str
-    approach: float
-    film_offset: float
-    film_compliance: float
-    loss_compliance: float
-    stiffness: float
-    damping: float
-    central_film: float
-    minimum_film: float
-    max_pressure: float
-    rolling_force: float
-    mass_flow: float
-    film_offset_error: float
-    film_compliance_error: float
-    loss_compliance_error: float
-    stiffness_error: float
-    damping_error: float
-    central_film_error: float
-    minimum_film_error: float
-    max_pressure_error: float
-    rolling_force_error: float
-    mass_flow_error: float
-    traction: float
-    wall_stress: float
-    film_temperature: float
-    surface_temperature: float
-    film_temperature_error: float
-    surface_temperature_error: float
-    iterations: int
-    solve_seconds: float
-    viscosity_extrapolated: bool
+    approach: float = math.nan
+    stiffness: float = math.nan
+    damping: float = math.nan
+    stiffness_error: float = math.nan
+    damping_error: float = math.nan
 
 
-class ContactSolver(Protocol):
+class ContactSolverDefaults(Protocol):
+    """Answers that most solvers give about themselves, to inherit from: a quick solver, known by its sources.
+
+    A solver overrides what is different for it, by a property or by an attribute of its class such as ``slow = True``.
+    """
+
+    @property
+    def slow(self) -> bool:
+        """True where a point takes seconds or more: each is then a task of its own, and is kept at once."""
+        return False
+
+    @property
+    def version(self) -> str | None:
+        """Mark that tells results of one version from those of the next; None for a hash of the solver's sources."""
+        return None
+
+    @property
+    def wants_backbone(self) -> bool:
+        """Tell whether its maps get the lines that a contact law needs besides."""
+        return False
+
+    @property
+    def natural_frequencies(self) -> tuple[float, ...]:
+        """omega sqrt(b^2 + 2 h R)/u at which the backbone of its maps holds the film compliance; none if empty."""
+        return ()
+
+    @property
+    def provenance(self) -> Mapping[str, str]:
+        """Further attributes of its maps, by name."""
+        return {}
+
+    def film_spectrum(
+        self: ContactSolver,
+        contact: LineContact,
+        lubricant: Lubricant,
+        point: OperatingPoint,
+        frequencies: FloatArray,
+    ) -> FilmSpectrum:
+        """Film of one point that oscillates a little, over frequency; one without a memory is the same at each.
+
+        Parameters
+        ----------
+        contact : LineContact
+            The contact.
+        lubricant : Lubricant
+            The oil.
+        point : OperatingPoint
+            Load, speed and temperature.
+        frequencies : ndarray, shape (k,)
+            [Hz], > 0.
+        """
+        (film,) = self.solve_line(contact, lubricant, (point.load,), point.entrainment_speed, point.temperature)
+        return slow_spectrum(film, frequencies)
+
+    def line_spectra(
+        self: ContactSolver,
+        contact: LineContact,
+        lubricant: Lubricant,
+        loads: tuple[float, ...],
+        entrainment_speed: float,
+        temperature: float,
+    ) -> tuple[FilmSpectrum, ...]:
+        """Films of `solve_line`, each over `natural_frequencies`.
+
+        Parameters
+        ----------
+        contact, lubricant, loads, entrainment_speed, temperature
+            The arguments of `ContactSolver.solve_line`.
+        """
+        spectra = []
+        for load, film in zip(
+            loads, self.solve_line(contact, lubricant, loads, entrainment_speed, temperature), strict=True
+        ):
+            point = OperatingPoint(load, entrainment_speed, temperature)
+            at = natural_to_hertz(self.natural_frequencies, film, contact, point)
+            found = self.film_spectrum(contact, lubricant, point, at) if film.status.usable else no_spectrum(film, at)
+            spectra.append(replace(found, film=film))
+        return tuple(spectra)
+
+
+class ContactSolver(ContactSolverDefaults, Protocol):
     """Interface of every solver: films along a line of loads, so that a point may start from the one before it.
 
     `solve_line` never raises for a point that does not converge: it returns the status. It is deterministic: the same
@@ -284,31 +334,6 @@ class ContactSolver(Protocol):
     @property
     def name(self) -> str:
         """Name of the solver, as in a job file."""
-        ...
-
-    @property
-    def slow(self) -> bool:
-        """True where a point takes seconds or more: each is then a task of its own, and is kept at once."""
-        ...
-
-    @property
-    def version(self) -> str | None:
-        """Mark that tells results of one version from those of the next; None for a hash of the solver's sources."""
-        ...
-
-    @property
-    def wants_backbone(self) -> bool:
-        """Tell whether its maps get the lines that a contact law needs besides."""
-        ...
-
-    @property
-    def natural_frequencies(self) -> tuple[float, ...]:
-        """omega sqrt(b^2 + 2 h R)/u at which the backbone of its maps holds the film compliance; none if empty."""
-        ...
-
-    @property
-    def provenance(self) -> Mapping[str, str]:
-        """Further attributes of its maps, by name."""
         ...
 
     def solve_line(
@@ -336,118 +361,9 @@ class ContactSolver(Protocol):
         """
         ...
 
-    def film_spectrum(
-        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, frequencies: FloatArray
-    ) -> FilmSpectrum:
-        """Film of one point that oscillates a little, over frequency.
-
-        Parameters
-        ----------
-        contact : LineContact
-            The contact.
-        lubricant : Lubricant
-            The oil.
-        point : OperatingPoint
-            Load, speed and temperature.
-        frequencies : ndarray, shape (k,)
-            [Hz], > 0.
-        """
-        ...
-
-    def line_spectra(
-        self,
-        contact: LineContact,
-        lubricant: Lubricant,
-        loads: tuple[float, ...],
-        entrainment_speed: float,
-        temperature: float,
-    ) -> tuple[FilmSpectrum, ...]:
-        """Films of `solve_line`, each over `natural_frequencies`; arguments as of `solve_line`.
-
-        Parameters
-        ----------
-        contact, lubricant, loads, entrainment_speed, temperature
-            The arguments of `ContactSolver.solve_line`.
-        """
-        ...
-
     def settings(self) -> dict[str, float | int | str]:
         """Everything that changes the numbers, by name; goes into the map's attributes and the store's key."""
         ...
-
-
-class ContactSolverDefaults:
-    """Answers that most solvers give about themselves, to inherit from: a quick solver, known by its sources.
-
-    A solver overrides what is different for it, by a property or by an attribute of its class such as ``slow = True``.
-    """
-
-    @property
-    def slow(self) -> bool:
-        """A point takes less than seconds: lines of loads are tasks."""
-        return False
-
-    @property
-    def version(self) -> str | None:
-        """No version: a hash of the solver's sources and of the physics stands for it."""
-        return None
-
-    @property
-    def wants_backbone(self) -> bool:
-        """Its maps get no lines besides their points."""
-        return False
-
-    @property
-    def natural_frequencies(self) -> tuple[float, ...]:
-        """Its maps hold films of slow motion only."""
-        return ()
-
-    @property
-    def provenance(self) -> Mapping[str, str]:
-        """Its maps get no further attributes."""
-        return {}
-
-    def film_spectrum(
-        self: ContactSolver,
-        contact: LineContact,
-        lubricant: Lubricant,
-        point: OperatingPoint,
-        frequencies: FloatArray,
-    ) -> FilmSpectrum:
-        """Film without a memory: the same film and loss compliance at each frequency; arguments as of `ContactSolver`.
-
-        Parameters
-        ----------
-        contact, lubricant, point, frequencies
-            The arguments of `ContactSolver.film_spectrum`.
-        """
-        (film,) = self.solve_line(contact, lubricant, (point.load,), point.entrainment_speed, point.temperature)
-        return slow_spectrum(film, frequencies)
-
-    def line_spectra(
-        self: ContactSolver,
-        contact: LineContact,
-        lubricant: Lubricant,
-        loads: tuple[float, ...],
-        entrainment_speed: float,
-        temperature: float,
-    ) -> tuple[FilmSpectrum, ...]:
-        """Films of a line, and each once more over frequency; arguments as of `ContactSolver`.
-
-        Parameters
-        ----------
-        contact, lubricant, loads, entrainment_speed, temperature
-            The arguments of `ContactSolver.solve_line`.
-        """
-        spectra = []
-        for load, film in zip(
-            loads, self.solve_line(contact, lubricant, loads, entrainment_speed, temperature), strict=True
-        ):
-            point = OperatingPoint(load, entrainment_speed, temperature)
-            at = natural_to_hertz(self.natural_frequencies, film, contact, point)
-            found = self.film_spectrum(contact, lubricant, point, at) if film.status.usable else no_spectrum(film, at)
-            spectra.append(replace(found, film=film))
-        return tuple(spectra)
 
 
 def natural_to_hertz(
@@ -527,37 +443,14 @@ def contact_solution(film: FilmSolution, contact: LineContact, point: OperatingP
         film.film_compliance_error,
         film.loss_compliance_error,
     )
+    of_film = {entry.name: getattr(film, entry.name) for entry in fields(FilmSolution)}
+    errors = {
+        "film_offset_error": abs(film.film_offset_error),
+        "film_compliance_error": abs(film.film_compliance_error),
+        "loss_compliance_error": film.loss_compliance_error * math.copysign(1.0, film.film_compliance_error),
+        "stiffness_error": solids.stiffness_error,
+        "damping_error": solids.damping_error,
+    }
     return ContactSolution(
-        status=film.status,
-        reason=film.reason,
-        approach=solids.approach,
-        film_offset=film.film_offset,
-        film_compliance=film.film_compliance,
-        loss_compliance=film.loss_compliance,
-        stiffness=solids.stiffness,
-        damping=solids.damping,
-        central_film=film.central_film,
-        minimum_film=film.minimum_film,
-        max_pressure=film.max_pressure,
-        rolling_force=film.rolling_force,
-        mass_flow=film.mass_flow,
-        film_offset_error=abs(film.film_offset_error),
-        film_compliance_error=abs(film.film_compliance_error),
-        loss_compliance_error=film.loss_compliance_error * math.copysign(1.0, film.film_compliance_error),
-        stiffness_error=solids.stiffness_error,
-        damping_error=solids.damping_error,
-        central_film_error=film.central_film_error,
-        minimum_film_error=film.minimum_film_error,
-        max_pressure_error=film.max_pressure_error,
-        rolling_force_error=film.rolling_force_error,
-        mass_flow_error=film.mass_flow_error,
-        traction=film.traction,
-        wall_stress=film.wall_stress,
-        film_temperature=film.film_temperature,
-        surface_temperature=film.surface_temperature,
-        film_temperature_error=film.film_temperature_error,
-        surface_temperature_error=film.surface_temperature_error,
-        iterations=film.iterations,
-        solve_seconds=film.solve_seconds,
-        viscosity_extrapolated=film.viscosity_extrapolated,
+        **{**of_film, **errors}, approach=solids.approach, stiffness=solids.stiffness, damping=solids.damping
     )
