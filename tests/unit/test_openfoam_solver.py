@@ -21,7 +21,7 @@ from ehdmaps.errors import DiskFullError, InputError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.make.tasks import line_tasks
 from ehdmaps.jobs.reader import parse_job, read_job
-from ehdmaps.jobs.solve.film_plot import colour_limits, places
+from ehdmaps.jobs.solve.plots import colour_limits, places
 from ehdmaps.openfoam import installation as installed
 from ehdmaps.openfoam.case import CLAIM, PREFIX, claimed, remove_leftovers
 from ehdmaps.openfoam.grid_solver import GridSolution

@@ -14,8 +14,8 @@ import ehdmaps
 from ehdmaps import STEEL, BearingGeometry, Lubricant, OperatingPoint, Status
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.reader import read_job
+from ehdmaps.jobs.solve.plots import plot_spectrum, spectrum_figure
 from ehdmaps.jobs.solve.spectrum import spectrum_record, spectrum_table
-from ehdmaps.jobs.solve.spectrum_plot import plot_spectrum, spectrum_figure
 from ehdmaps.physics.hertz import half_width
 
 OIL = Lubricant.named("FVA3")

@@ -96,7 +96,7 @@ def _over_frequency(arguments: argparse.Namespace, request: _Request) -> tuple[s
     solver = _solver(arguments, job)
     dataset = spectrum_dataset(job.contacts, job.lubricant, point, request.frequencies, solver)
     if arguments.plot is not None:
-        from ehdmaps.jobs.solve.spectrum_plot import plot_spectrum
+        from ehdmaps.jobs.solve.plots import plot_spectrum
 
         plot_spectrum(dataset, f"{job.title}, {job.lubricant.title}", Path(arguments.plot))
         tell(f"{arguments.plot}: written")

@@ -93,7 +93,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         for name, ellipse in zip(CONTACTS, request.bearing.contacts(STEEL), strict=True)
     }
     if request.plot is not None:
-        from ehdmaps.jobs.solve.point_plot import plot_points
+        from ehdmaps.jobs.solve.plots import plot_points
 
         plot_points(solutions, _heading(request), request.plot)
         tell(f"{request.plot}: written")

@@ -50,7 +50,7 @@ class FilmOutputs:
         written : list of str
             What was written, in words.
         """
-        from ehdmaps.jobs.solve.film_plot import FilmRow, plot_films
+        from ehdmaps.jobs.solve.plots import FilmRow, plot_films
         from ehdmaps.openfoam.fields import write_fields
         from ehdmaps.openfoam.solver import OpenFoamSolver
 
