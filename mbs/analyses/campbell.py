@@ -22,7 +22,7 @@ from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.law_errors import LawChange
 from mbs.analyses.case import Case, Failed, Progress, as_cases, side_by_side, silent
 from mbs.analyses.film_errors import notable_from
-from mbs.analyses.operating import held, operating, states_of
+from mbs.analyses.operating import held, operating, settled, states_of
 from mbs.analyses.ramp import recorded_run, rehearsed, run_course, silent_run
 from mbs.analyses.reach import fade_of
 from mbs.analyses.sensors import chosen_sensors, followed_orders
@@ -520,7 +520,8 @@ def _one(model: Model, look: _Look, told: Callable[[int], None], with_modes: boo
 def _modes(model: Model, spectra: RunUpSpectra) -> Sweep:
     """Modes of the linear system at some speeds of the run, rising."""
     speeds = spectra.campbell.speeds
-    return sweep(model.system, np.linspace(speeds.min(), speeds.max(), MODE_SPEEDS), cage_angles=CAGE_ANGLES)
+    system = settled([model], float(speeds.max()))[0].system
+    return sweep(system, np.linspace(speeds.min(), speeds.max(), MODE_SPEEDS), cage_angles=CAGE_ANGLES)
 
 
 def _overlay(entry: LawRun) -> Overlay | None:

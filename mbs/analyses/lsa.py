@@ -14,12 +14,12 @@ import xarray as xr
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
 from mbs.analyses.film_errors import film_errors
-from mbs.analyses.operating import operating, states_of
+from mbs.analyses.operating import operating, settled, states_of
 from mbs.analyses.soundness import findings_at_rest, lift_off, with_findings
 from mbs.linearised.averaged import AveragedEquilibrium, mean_equilibrium
 from mbs.linearised.linear import StateSpace, frequency_response, level_bands, sensed, state_space, with_peaks
 from mbs.linearised.linear import responses as responses_of
-from mbs.linearised.modes import StateModes, modes_of, state_modes, undamped_modes
+from mbs.linearised.modes import Modes, StateModes, modes_of, state_modes, undamped_modes
 from mbs.linearised.validity import DynamicLoad, FilmError, dynamic_loads
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium
@@ -67,6 +67,8 @@ class LsaResult:
         Equilibrium at which the system was linearised, gear meshes and bearings with their mean stiffness.
     space : StateSpace
         State space from the inputs of the scene to its sensors.
+    modes : Modes
+        Complex modes, around which there are more frequencies.
     asked : int
         How many frequencies were asked for; the others are around lightly damped modes.
     frequencies : array, shape (frequencies,)
@@ -92,6 +94,7 @@ class LsaResult:
     model: Model
     balance: Equilibrium
     space: StateSpace
+    modes: Modes
     asked: int
     frequencies: FloatArray
     responses: ComplexArray
@@ -171,7 +174,10 @@ def lsa_of(models: Sequence[Model], settings: LsaSettings | None = None) -> list
     AnalysisError
         If there is no equilibrium, or its matrices are not finite.
     """
-    found = [_linearised(model, settings or LsaSettings()) for model in models]
+    settings = settings or LsaSettings()
+    operation = settings.operation or models[0].operation
+    highest = None if settings.frequencies is None else max(settings.frequencies, default=None)
+    found = [_linearised(model, settings) for model in settled(models, operation.speed, highest)]
     frequencies = np.unique(np.concatenate([entry.frequencies for entry in found]))
     return [_responded(entry, frequencies) for entry in found]
 
@@ -182,6 +188,7 @@ class _Linearised(NamedTuple):
     model: Model
     balance: Equilibrium
     states: StateModes
+    modes: Modes
     asked: int
     frequencies: FloatArray
 
@@ -198,13 +205,14 @@ def _linearised(model: Model, settings: LsaSettings) -> _Linearised:
     model = operating(model, operation.speed)
     balance = mean_equilibrium(model.system, operation, settings.cage_angles)
     states = state_modes(balance, undamped_modes(balance))
-    frequencies = with_peaks(np.array(asked), modes_of(balance, states).eigenvalues)
-    return _Linearised(model, balance, states, len(asked), frequencies)
+    modes = modes_of(balance, states)
+    frequencies = with_peaks(np.array(asked), modes.eigenvalues)
+    return _Linearised(model, balance, states, modes, len(asked), frequencies)
 
 
 def _responded(found: _Linearised, frequencies: FloatArray) -> LsaResult:
     """The responses of a linearised model at some frequencies."""
-    model, balance, states, asked, _ = found
+    model, balance, states, modes, asked, _ = found
     scene = model.scene
     motion = responses_of(balance, scene.inputs, frequencies)
     responses = sensed(balance, scene.sensors, frequencies, motion)
@@ -230,6 +238,7 @@ def _responded(found: _Linearised, frequencies: FloatArray) -> LsaResult:
         model=model,
         balance=balance,
         space=space,
+        modes=modes,
         asked=asked,
         frequencies=frequencies,
         responses=responses,

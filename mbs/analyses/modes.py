@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import xarray as xr
 
 from mbs.analyses.film_errors import film_errors
-from mbs.analyses.operating import operating, states_of
+from mbs.analyses.operating import operating, settled, states_of
 from mbs.analyses.soundness import findings_at_rest, with_findings
 from mbs.linearised.averaged import mean_equilibrium
 from mbs.linearised.modes import Modes
@@ -98,7 +98,12 @@ class ModesResult:
         return modes_figure(self.model, self.modes, swinging[inside], limit, "; ".join(notes))
 
 
-def modes(model: Model, operation: Operation | None = None, cage_angles: int = CAGE_ANGLES) -> ModesResult:
+def modes(
+    model: Model,
+    operation: Operation | None = None,
+    cage_angles: int = CAGE_ANGLES,
+    highest: float | None = None,
+) -> ModesResult:
     """Find the complex modes.
 
     Parameters
@@ -110,6 +115,9 @@ def modes(model: Model, operation: Operation | None = None, cage_angles: int = C
     cage_angles : int
         Angles within one pitch of the rollers over which stiffness and damping of the bearings are averaged; 1 for the
         start angle of the cages alone.
+    highest : float, optional
+        Frequency up to which modes have no error by the cut-off of shafts that state none [Hz]; the highest of [linear]
+        of the scene, else 5 kHz, if left out.
 
     Raises
     ------
@@ -127,7 +135,7 @@ def modes(model: Model, operation: Operation | None = None, cage_angles: int = C
     """
     check_cage_angles("modes", cage_angles)
     operation = operation or model.operation
-    model = operating(model, operation.speed)
+    model = operating(settled([model], operation.speed, highest)[0], operation.speed)
     balance = mean_equilibrium(model.system, operation, cage_angles)
     found = modes_at(balance)
     dataset = described(with_states(modes_dataset(found, balance), states_of(model)), **law_attributes(model))

@@ -1,4 +1,4 @@
-"""A model as it is in operation: temperatures of the raceways and clearances of its bearings at a speed.
+"""A model as it is in operation: temperatures of the raceways and clearances of its bearings, cut-offs of its shafts.
 
 Every analysis that takes a speed asks here before it looks for an equilibrium. A bearing whose scene states neither
 temperatures nor heat nor fits stays as it is, and a model without such bearings is returned as it came.
@@ -11,10 +11,18 @@ thin, that of the other is too thick.
 
 from __future__ import annotations
 
+import dataclasses
 import math
+from collections.abc import Sequence
 
+import numpy as np
+
+from ehdmaps.errors import InputError
 from mbs.bearings.thermal import BearingState, Clearance
-from mbs.scene.assembly import Model
+from mbs.model.elements import Operation
+from mbs.model.equilibrium import equilibrium
+from mbs.scene.assembly import Model, with_bodies
+from mbs.scene.specs import BodySpec, ShaftSpec
 
 
 def operating(model: Model, speed: float) -> Model:
@@ -90,3 +98,76 @@ def states_of(model: Model) -> tuple[BearingState, ...]:
     others = model.located
     kelvin = scene.temperature
     return (*found, *(BearingState(one.name, kelvin, kelvin, Clearance(clearances[one.name])) for one in others))
+
+
+FELT = 5e-4
+"""Part of a frequency up to which modes that are left out are not felt."""
+
+
+def settled(models: Sequence[Model], speed: float, highest: float | None = None) -> list[Model]:
+    """Models whose shafts without a stated cut-off have one that leaves their modes as they are.
+
+    The cut-off is doubled until what is left out moves no undamped mode by more than `FELT`, or the theory of beams
+    does not go on; all models have the same one. What remains is told with the modes (`mbs.linearised.reduction`).
+
+    Parameters
+    ----------
+    models : sequence of Model
+        One scene with its laws, not in operation.
+    speed : float
+        Speed of the system [rad/s].
+    highest : float, optional
+        Frequency up to which modes are looked at [Hz]; the highest of [linear] of the scene, else that of its Campbell
+        diagram, if left out.
+
+    Raises
+    ------
+    AnalysisError
+        If there is no equilibrium.
+    """
+    found = list(models)
+    if not any(_is_open(body) for model in models for body in model.scene.bodies):
+        return found
+    while max(_felt(model, speed, highest) for model in found) > FELT:
+        try:
+            found = [with_bodies(model, [_raised(body) for body in model.scene.bodies]) for model in found]
+        except InputError:  # beyond the theory of beams
+            break
+    return [_closed(model) for model in found]
+
+
+def _felt(model: Model, speed: float, highest: float | None) -> float:
+    """By which part of it what open shafts leave out moves a mode at most."""
+    from mbs.linearised.averaged import steady_system  # statics needs nothing of them
+    from mbs.linearised.modes import free_motions, undamped_modes
+    from mbs.linearised.reduction import undamped_part
+
+    scene = model.scene
+    top = max(scene.frequencies, default=scene.campbell.highest) if highest is None else highest
+    balance = equilibrium(steady_system(model.system), Operation(speed))
+    modes = undamped_modes(balance)
+    seen = (modes.frequency <= top) & ~free_motions(modes.frequency)
+    shafts = [body.name for body in scene.bodies if _is_open(body)]
+    moved = undamped_part(balance.system, modes.frequency[seen], modes.shapes[:, seen], shafts)
+    return float(np.max(np.abs(moved), initial=0.0))
+
+
+def _is_open(body: BodySpec) -> bool:
+    """Tell whether a body is a shaft whose cut-off is not stated."""
+    return isinstance(body, ShaftSpec) and not body.cutoff_stated
+
+
+def _raised(body: BodySpec) -> BodySpec:
+    """An open shaft with twice its cut-off; other bodies as they are."""
+    if not (isinstance(body, ShaftSpec) and not body.cutoff_stated and body.cutoff is not None):
+        return body
+    return dataclasses.replace(body, cutoff=2.0 * body.cutoff)
+
+
+def _closed(model: Model) -> Model:
+    """The model with the cut-offs that it has as if they were stated."""
+    bodies = [
+        dataclasses.replace(body, cutoff_stated=True) if isinstance(body, ShaftSpec) else body
+        for body in model.scene.bodies
+    ]
+    return dataclasses.replace(model, scene=dataclasses.replace(model.scene, bodies=bodies))

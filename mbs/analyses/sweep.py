@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -18,7 +19,7 @@ from ehdmaps.units import RPM
 from mbs.analyses.case import Case, Failed, Progress, as_cases, side_by_side, silent
 from mbs.analyses.film_errors import notable_from
 from mbs.analyses.losses import losses_over_speed
-from mbs.analyses.operating import operating, states_of
+from mbs.analyses.operating import operating, settled, states_of
 from mbs.analyses.reach import fade_of
 from mbs.analyses.sensors import excited_orders
 from mbs.analyses.soundness import Judged, findings_over_speed, with_findings
@@ -209,6 +210,8 @@ def sweep(
         raise InputError(sweep_problems(cases[0].model.scene))
     tell = progress or silent
     tell(0, len(cases))
+    models = settled([case.model for case in cases], speeds.end)
+    cases = tuple(dataclasses.replace(case, model=model) for case, model in zip(cases, models, strict=True))
     found: list[Sweep] = []
     for entry in side_by_side(
         lambda index, _: _one(cases[index], speeds, settings.cage_angles),
@@ -375,7 +378,9 @@ def critical_of(models: Sequence[Model], settings: SweepSettings | None = None) 
     AnalysisError
         If there is no equilibrium at a speed.
     """
-    found = [_swept(model, settings or SweepSettings()) for model in models]
+    settings = settings or SweepSettings()
+    speeds = settings.speeds or models[0].scene.sweep
+    found = [_swept(model, settings) for model in (models if speeds is None else settled(models, speeds.end))]
     refined = np.unique(np.concatenate([with_critical(entry.sweep.speeds, entry.found) for entry in found]))
     return [_responded(entry, refined) for entry in found]
 

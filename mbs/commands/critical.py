@@ -24,6 +24,7 @@ from mbs.commands.sweep import read_speeds
 from mbs.linearised.critical import CriticalSpeed
 from mbs.linearised.linear import sensor_unit
 from mbs.output.model_text import clean, heading
+from mbs.output.reduction_text import reduction_lines
 from mbs.output.sweep_data import orbits, sensed
 from mbs.planning.question import over_speeds
 
@@ -116,8 +117,17 @@ def _report(found: CriticalResult, label: str) -> list[str]:
         f"  {swept.size} speeds from {_rpm(swept[0])} to {_rpm(np.abs(swept).max())}, {more} more around critical ones",
         *([] if label else _critical(found)),
         *_responses(found),
+        *_reduction(found),
         *fade_lines(model, swept),
     ]
+
+
+def _reduction(found: CriticalResult) -> list[str]:
+    """Lines on what the reduction of bodies leaves out of the critical modes, by the modes up to their frequencies."""
+    damped = found.sweep.damped
+    highest = max((entry.eigenvalue.imag / (2.0 * math.pi) for entry in found.found), default=0.0)
+    seen = np.where(damped.frequency <= highest, damped.frequency, np.nan)
+    return reduction_lines(found.model.system, seen, damped.damping_ratio, damped.reduction)
 
 
 def _beside(found: list[tuple[str, CriticalResult]]) -> list[str]:

@@ -20,6 +20,7 @@ from mbs.commands.common import Looked, read_cage_angles, write
 from mbs.linearised.linear import peak_places, response_display
 from mbs.output.files import RESULT
 from mbs.output.model_text import band_lines, film_lines, heading
+from mbs.output.reduction_text import reduction_lines
 from mbs.output.state_space_file import write_spaces
 from mbs.planning.question import at_one_speed
 from mbs.scene.assembly import Model
@@ -101,9 +102,18 @@ def _report(found: LsaResult, label: str) -> list[str]:
         "damped modes",
         *_peaks(model, found),
         *band_lines(model, found.film_share),
+        *_reduction(found),
         *film_lines(found.errors, frequencies),
         *(fade_lines(model, np.array([scene.speed])) if scene.speed else []),
     ]
+
+
+def _reduction(found: LsaResult) -> list[str]:
+    """Lines on what the reduction of bodies leaves out of the modes up to the highest frequency."""
+    modes = found.modes
+    seen = (modes.frequency <= found.frequencies.max()) & (modes.eigenvalues.imag > 0.0)
+    part = None if modes.reduction is None else modes.reduction.of(seen)
+    return reduction_lines(found.balance.system, modes.frequency[seen], modes.damping_ratio[seen], part)
 
 
 def _peaks(model: Model, found: LsaResult) -> list[str]:

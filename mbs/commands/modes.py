@@ -24,6 +24,7 @@ from mbs.linearised.shapes import skeleton
 from mbs.output.band_text import about_lines, mode_lines
 from mbs.output.files import RESULT
 from mbs.output.model_text import LITTLE_DAMPING, OTHER_DAMPING, band_lines, clean, film_law_line, film_lines, heading
+from mbs.output.reduction_text import reduction_lines
 from mbs.output.result_text import above_lines, free_lines, kinds, share_words
 from mbs.output.shapes.shapes_file import MOST_SHAPES as MOST_WRITTEN
 from mbs.output.shapes.shapes_file import SHAPES, series_files, write_shapes
@@ -46,7 +47,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     done = analysed(
         arguments,
         _asked,
-        lambda asked: modes(asked[0], cage_angles=asked[2]),
+        lambda asked: modes(asked[0], cage_angles=asked[2], highest=asked[1]),
         lambda asked: Looked(at_one_speed(asked[0].scene), asked[1]),
     )
     result, highest = done.result, _highest(arguments, done.result.model.scene, [])
@@ -67,6 +68,12 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *(about_lines(model.scene) if bands is not None else []),
         *band_lines(model, 0.0 if found.bands is None else found.bands.film_share, bands is not None),
         *(film_law_line(model, found.film_law is not None) if bands is None else []),
+        *reduction_lines(
+            result.balance.system,
+            found.frequency[shown],
+            found.damping_ratio[shown],
+            None if found.reduction is None else found.reduction.of(shown),
+        ),
         *_overdamped(found, overdamped),
         *(f"  {note}" for note in notes),
         *_lost(found),

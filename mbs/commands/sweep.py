@@ -34,6 +34,7 @@ from mbs.output.model_text import (
     free_words,
     heading,
 )
+from mbs.output.reduction_text import reduction_lines
 from mbs.output.state_text import flooded_note, state_lines
 from mbs.planning.question import over_speeds
 from mbs.scene.assembly import Model
@@ -75,6 +76,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *(f"  {line}" for line in flooded_note(_largest(torque), case.model.supplies.values())),
             *_undamped(entry, case.model.system),
             *_complex(entry),
+            *_reduction(entry, case.model),
             *_responses(entry),
             *band_lines(case.model, entry.film_share),
             *_exchanged(entry),
@@ -283,6 +285,18 @@ def _complex(result: Sweep) -> list[str]:
             + _over_pitch(result, found.damping_ratio_spread[:, k], found.damping_ratio[:, k], "damping ratio")
         )
     return lines
+
+
+def _reduction(result: Sweep, model: Model) -> list[str]:
+    """Lines on what the reduction of bodies leaves out of the complex modes up to the highest frequency."""
+    highest = max(model.scene.frequencies, default=model.scene.campbell.highest)
+    found = result.damped
+    return reduction_lines(
+        model.system,
+        np.where(found.frequency <= highest, found.frequency, np.nan),
+        found.damping_ratio,
+        found.reduction,
+    )
 
 
 def _responses(result: Sweep) -> list[str]:

@@ -11,6 +11,7 @@ from scipy.linalg import eigh
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
+from ehdmaps.units import quantity
 from mbs.frozen import frozen
 from mbs.model.body import Body, Frame, Skin
 
@@ -89,6 +90,8 @@ class ReducedBody:
         Origin of the matrices.
     skin : Skin or None
         Surface of the finite-element body, with places from its origin, for pictures; None where it is not known.
+    left_out : array, shape (n, n), or None
+        What modes above the cut-off add, see `mbs.model.body.Body`; None where it is not known.
 
     Raises
     ------
@@ -103,6 +106,7 @@ class ReducedBody:
     frames: Mapping[str, Frame]
     attributes: Mapping[str, str] = field(default_factory=dict)
     skin: Skin | None = None
+    left_out: FloatArray | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "coordinates", tuple(self.coordinates))
@@ -120,7 +124,7 @@ class ReducedBody:
                 f"reduced body, units: got {self.units!r:.80}; allowed: one of {', '.join(UNITS)} for each of {size} "
                 "coordinates"
             )
-        for name in ("mass", "stiffness"):
+        for name in ("mass", "stiffness", *(("left_out",) if self.left_out is not None else ())):
             matrix = np.asarray(getattr(self, name), dtype=np.float64)
             object.__setattr__(self, name, matrix)
             if matrix.shape != (size, size):
@@ -153,6 +157,14 @@ class ReducedBody:
     def size(self) -> int:
         """Number n of coordinates."""
         return len(self.coordinates)
+
+    @property
+    def cutoff(self) -> float:
+        """Frequency above which modes are left out [Hz]: as stated, else that of the highest mode; 0 without any."""
+        try:
+            return quantity(self.attributes.get("cutoff", ""), "Hz")
+        except InputError:
+            return float(np.nanmax(mode_frequencies(self), initial=0.0))
 
     def _matrix_problems(self) -> list[str]:
         """List problems with matrices of the right shape."""
@@ -249,6 +261,9 @@ def up_to(reduced: ReducedBody, cutoff: float) -> ReducedBody:
                 "`mbs reduce` does; reduce it again with the lower cut-off"
             )
     square = np.ix_(kept, kept)
+    gone = np.setdiff1d(np.arange(reduced.size), kept)
+    coupling = reduced.mass[np.ix_(kept, gone)]
+    added = (coupling / np.diag(reduced.stiffness)[gone]) @ coupling.T
     return ReducedBody(
         reduced.mass[square],
         reduced.stiffness[square],
@@ -257,6 +272,7 @@ def up_to(reduced: ReducedBody, cutoff: float) -> ReducedBody:
         {name: replace(frame, transform=frame.transform[:, kept]) for name, frame in reduced.frames.items()},
         {**reduced.attributes, "cutoff": f"{cutoff:.6g} Hz"},
         None if reduced.skin is None else replace(reduced.skin, transforms=reduced.skin.transforms[:, :, kept]),
+        None if reduced.left_out is None else reduced.left_out[square] + added,
     )
 
 
@@ -308,6 +324,8 @@ def to_body(
         },
         spin=spin,
         skin=None if reduced.skin is None else _placed(reduced.skin, here, turn),
+        cutoff=reduced.cutoff,
+        left_out=reduced.left_out,
     )
 
 

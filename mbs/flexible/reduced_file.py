@@ -2,11 +2,12 @@
 
 netCDF: dimensions coordinate, with_respect_to, frame, freedom, axis; variables mass, stiffness, unit, position,
 transform; provenance as attributes. Bodies with a surface for pictures have the dimensions surface_node, triangle and
-corner, too, and the variables surface_position, surface_transform (3 digits), and surface_triangle.
+corner, too, and the variables surface_position, surface_transform (3 digits), and surface_triangle. The variable
+left_out, what modes above the cut-off add, is not in older files.
 
 npz: arrays mass (n, n), stiffness (n, n), coordinates (n,), units (n,), frames (f,), positions (f, 3), transforms
 (f, 6, n); optional attributes (a, 2) as texts, surface_position (p, 3), surface_transform (p, 3, n), surface_triangle
-(t, 3).
+(t, 3), left_out (n, n).
 """
 
 from __future__ import annotations
@@ -34,6 +35,7 @@ MOST_FRAMES = 10_000
 _MADE = {MADE_AS: "reduced body"}
 _ARRAYS = ("mass", "stiffness", "coordinates", "units", "frames", "positions", "transforms")
 _OPTIONAL = "attributes"
+_REST = "left_out"
 _SKIN = ("surface_position", "surface_transform", "surface_triangle")
 _PACKED = {"zlib": True, "complevel": 6, "shuffle": True}
 _DIGITS = {"significant_digits": 3, "quantize_mode": "GranularBitRound"}
@@ -130,6 +132,7 @@ def _arrays(reduced: ReducedBody) -> dict[str, Any]:
         "transforms": np.array([frame.transform for frame in frames]).reshape(-1, 6, reduced.size),
         _OPTIONAL: np.array(sorted({**reduced.attributes, **_MADE}.items()), dtype=np.str_).reshape(-1, 2),
         **({} if reduced.skin is None else _skin_arrays(reduced.skin)),
+        **({} if reduced.left_out is None else {_REST: reduced.left_out}),
     }
 
 
@@ -181,6 +184,12 @@ def _dataset(reduced: ReducedBody) -> xr.Dataset:
             ),
             _SKIN[2]: (("triangle", "corner"), corners, {"long_name": "triangles of the surface, by their nodes"}),
         }
+    if reduced.left_out is not None:
+        words = {
+            "units": f"kg s2 for m, {per}",
+            "long_name": "what modes above the cut-off add by the fourth power of s",
+        }
+        variables[_REST] = (("coordinate", "with_respect_to"), reduced.left_out, words)
     coordinates = {
         "coordinate": ("coordinate", arrays["coordinates"], {"long_name": "coordinates of the reduced body"}),
         "with_respect_to": ("with_respect_to", arrays["coordinates"], {"long_name": "coordinates of the reduced body"}),
@@ -204,7 +213,7 @@ def _npz(path: Path) -> dict[str, Any]:
                     f"{path}: got the arrays {', '.join(file.files)!r:.100}; missing: {', '.join(missing)}; allowed: "
                     "those that write_reduced writes"
                 )
-            return {name: file[name] for name in (*_ARRAYS, _OPTIONAL, *_SKIN) if name in file.files}
+            return {name: file[name] for name in (*_ARRAYS, _OPTIONAL, *_SKIN, _REST) if name in file.files}
     except _DAMAGED as error:
         raise _unreadable(path, error) from error
 
@@ -240,7 +249,7 @@ def _netcdf(path: Path) -> dict[str, Any]:
     plural = {"unit": "units", "position": "positions", "transform": "transforms"}
     plural |= {"coordinate": "coordinates", "frame": "frames"}
     given = {plural.get(name, name): dataset[name].values for name in dims}
-    given |= {name: dataset[name].values for name in _SKIN if name in dataset}
+    given |= {name: dataset[name].values for name in (*_SKIN, _REST) if name in dataset}
     kept = {key: str(value) for key, value in dataset.attrs.items() if key != "schema_version"}
     return {**given, _OPTIONAL: np.array(sorted(kept.items()), dtype=np.str_).reshape(-1, 2)}
 
@@ -248,7 +257,8 @@ def _netcdf(path: Path) -> dict[str, Any]:
 def _body(given: Mapping[str, Any]) -> ReducedBody:
     """A body of arrays that may be of any shape and kind."""
     names = {key: np.asarray(given[key]) for key in ("coordinates", "units", "frames")}
-    numbers = {key: np.asarray(given[key]) for key in ("mass", "stiffness", "positions", "transforms")}
+    held = ("mass", "stiffness", "positions", "transforms", *((_REST,) if _REST in given else ()))
+    numbers = {key: np.asarray(given[key]) for key in held}
     problems = [
         f"{key}: got {value.ndim} dimensions of {value.dtype}; allowed: a list of at most {MOST_FRAMES} texts"
         for key, value in names.items()
@@ -293,6 +303,7 @@ def _body(given: Mapping[str, Any]) -> ReducedBody:
         frames={name: Frame(*place) for name, place in zip(names["frames"].tolist(), places, strict=True)},
         attributes={key: text for key, text in texts.tolist() if key not in _MADE},
         skin=_skin(skin) if skin else None,
+        left_out=numbers[_REST].astype(np.float64) if _REST in numbers else None,
     )
 
 

@@ -11,8 +11,9 @@ strains the body as a soft pressure would; the true seat of a bearing lies betwe
 u = Psi q + Phi p      Psi: shapes at rest, one interface coordinate 1 and the others 0
                            Phi: modes with all interface coordinates held, up to the cut-off
 
-Static forces on the interfaces are exact; frequencies are good up to about half the cut-off (Craig and Bampton, AIAA
-Journal 6, 1968, 1313-1319). Rigid interfaces are built into the matrices first; averaging ones are held in the mean.
+Static forces on the interfaces are exact; what modes above the cut-off leave out of the modes of a machine is kept, too
+(Craig and Bampton, AIAA Journal 6, 1968, 1313-1319; `mbs.linearised.reduction`). Rigid interfaces are built into the
+matrices first; averaging ones are held in the mean.
 """
 
 from __future__ import annotations
@@ -378,7 +379,18 @@ def reduce(
             **(attributes or {}),
         },
         skin=None if triangles is None else skin_of(model, triangles, motion),
+        left_out=_left_out(body, (mass @ basis[:, :count])[inner], basis.shape[1]),
     )
+
+
+def _left_out(body: HeldBody, pushed: FloatArray, size: int) -> FloatArray:
+    """Part that modes that are not kept add to the static shapes, whose inertia pushes, shape (size, size)."""
+    rest, count = np.zeros((size, size)), pushed.shape[1]
+    if pushed.size:
+        whole = pushed.T @ body.static(pushed, np.zeros((body.averages.shape[0], count)))
+        kept = body.shapes.T @ pushed
+        rest[:count, :count] = 0.5 * (whole + whole.T) - kept.T @ (kept / body.squares[:, None])
+    return rest
 
 
 @dataclass(frozen=True, eq=False)

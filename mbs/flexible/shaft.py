@@ -196,6 +196,30 @@ def reduced(
     return 0.5 * (mass + mass.T), 0.5 * (gyroscopic - gyroscopic.T), 0.5 * (stiffness + stiffness.T), basis
 
 
+def left_out(model: ShaftModel, masters: Sequence[int], stiffness: FloatArray, basis: FloatArray) -> FloatArray:
+    """Part that modes that are not kept add where they follow slowly, shape of `stiffness`; see `Body.left_out`.
+
+    Parameters
+    ----------
+    model : ShaftModel
+        The whole.
+    masters : sequence of int
+        Nodes that stay.
+    stiffness, basis : array
+        K and the basis of `reduced`.
+    """
+    first = len(masters) * len(model.freedoms)
+    rest = np.zeros_like(stiffness)
+    inner = model.rows([node for node in range(len(model.nodes)) if node not in masters], model.freedoms)
+    if not inner:
+        return rest
+    pushed = (model.mass @ basis[:, :first])[inner]
+    whole = pushed.T @ cho_solve(cho_factor(model.stiffness[np.ix_(inner, inner)]), pushed)
+    kept = basis[inner, first:].T @ pushed
+    rest[:first, :first] = whole - kept.T @ (kept / np.diag(stiffness)[first:, None])
+    return rest
+
+
 def _disc_matrices(inertia: Inertia) -> tuple[FloatArray, FloatArray]:
     """Mass and gyroscopic matrix of a rigid part, shapes (6, 6)."""
     lever = lever_arm((inertia.offset, 0.0, 0.0))
@@ -263,7 +287,8 @@ def flexible_shaft(
     Notes
     -----
     Valid for waves that are longer than a few diameters: sections stay plane. A cut-off above that all along the
-    shaft is an error. Modes of a system are good up to about half the cut-off.
+    shaft is an error. How wrong modes of a system are by a cut-off is told with them (`mbs.linearised.reduction`): it
+    depends on the spans between frames, and on no part of the cut-off alone.
     """
     problems = shaft_problems(sections, discs, freedoms, position, frames, spin, largest_element, cutoff, damping_ratio)
     if problems:
@@ -274,10 +299,11 @@ def flexible_shaft(
         if cutoff is None:
             kept = list(range(len(model.nodes)))
             mass, gyroscopic, stiffness = model.mass, model.gyroscopic, model.stiffness
-            basis = np.eye(len(mass))
+            basis, rest = np.eye(len(mass)), None
         else:
             kept = list(dict.fromkeys(nodes.values()))
             mass, gyroscopic, stiffness, basis = reduced(model, kept, cutoff)
+            rest = left_out(model, kept, stiffness, basis)
         damping = modal_damping(mass, stiffness, damping_ratio)
     except InputError as error:
         raise InputError([f"shaft {name!r}, {problem}" for problem in error.problems]) from error
@@ -303,6 +329,8 @@ def flexible_shaft(
         frames=places,
         spin=spin,
         line=_line(model, here, basis),
+        cutoff=math.inf if cutoff is None else cutoff,
+        left_out=rest,
     )
 
 

@@ -38,6 +38,7 @@ from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from mbs.linearised.film_part import CondensedBearing, FilmPart, condensed_bearings, film_part
+from mbs.linearised.reduction import ReductionPart
 from mbs.model.contacts import LAW_CHANGES
 from mbs.model.elements import OnRings
 from mbs.model.equilibrium import Equilibrium
@@ -75,6 +76,14 @@ class ModeBands(NamedTuple):
     def film_share(self) -> float:
         """Median part of bands of damping ratios that is what films with memory leave out; 0 without any band."""
         return film_share(self.by_films[1], self.damping_ratio)
+
+
+def with_reduction(bands: ModeBands, part: ReductionPart | None) -> ModeBands:
+    """Bands of modes with the size of what modes of bodies leave out that are not kept."""
+    if part is None:
+        return bands
+    frequency, damping_ratio = part.sizes
+    return bands._replace(frequency=bands.frequency + frequency, damping_ratio=bands.damping_ratio + damping_ratio)
 
 
 def film_share(by_films: FloatArray, bands: FloatArray) -> float:

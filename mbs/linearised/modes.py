@@ -18,7 +18,7 @@ from scipy.linalg import eigh
 
 from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from ehdmaps.errors import AnalysisError
-from mbs.linearised.bands import ModeBands, law_bands
+from mbs.linearised.bands import ModeBands, law_bands, with_reduction
 from mbs.linearised.dynamic import (
     FilmStates,
     LostMode,
@@ -27,6 +27,7 @@ from mbs.linearised.dynamic import (
     system_film_states,
 )
 from mbs.linearised.film_part import FilmLawPart, film_law_part, film_part
+from mbs.linearised.reduction import ReductionPart, reduction_part
 from mbs.model.equilibrium import Equilibrium
 
 FREE = 1e-6
@@ -62,6 +63,9 @@ class Modes:
         What errors of known size may change, see `mbs.linearised.bands`; None for laws that state none.
     film_law : FilmLawPart or None
         What films with memory leave out, see `mbs.linearised.film_part`; None where that is not known.
+    reduction : ReductionPart or None
+        What modes of bodies leave out that are not kept, see `mbs.linearised.reduction`; its size is in the bands, too.
+        None where no body is reduced, or none tells.
     """
 
     eigenvalues: ComplexArray
@@ -72,6 +76,7 @@ class Modes:
     among_films: int = 0
     bands: ModeBands | None = None
     film_law: FilmLawPart | None = None
+    reduction: ReductionPart | None = None
 
     @property
     def frequency(self) -> FloatArray:
@@ -227,7 +232,8 @@ def modes_of(balance: Equilibrium, states: StateModes) -> Modes:
     shapes = states.right[:n, kept]
     laws = law_bands(balance)
     left = states.left[kept, n : 2 * n]
-    bands = None if laws is None else laws.of_modes(values, shapes, left)
+    reduction = reduction_part(balance.system, values, shapes, left)
+    bands = None if laws is None else with_reduction(laws.of_modes(values, shapes, left), reduction)
     film_law = film_law_part(film_part(balance) if laws is None else laws.films, values, shapes, left)
     translations = np.array([unit != "rad" for unit in balance.system.units])
     for k in range(shapes.shape[1]):
@@ -238,7 +244,8 @@ def modes_of(balance: Equilibrium, states: StateModes) -> Modes:
         largest = int(np.argmax(shown if shown.max() > 1e-6 * size.max() else size))
         shapes[:, k] = column / column[largest]
     shares = energy_shares(balance, shapes, np.abs(values))
-    return Modes(values, shapes, tuple(balance.parts), shares, own.lost, int(np.count_nonzero(among)), bands, film_law)
+    count = int(np.count_nonzero(among))
+    return Modes(values, shapes, tuple(balance.parts), shares, own.lost, count, bands, film_law, reduction)
 
 
 def undamped_modes(balance: Equilibrium) -> UndampedModes:

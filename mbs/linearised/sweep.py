@@ -19,10 +19,11 @@ import numpy as np
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from ehdmaps.errors import AnalysisError, InputError
 from mbs.linearised.averaged import AveragedEquilibrium, PitchSpread, mean_equilibrium, pitch_spread
-from mbs.linearised.bands import film_share, law_bands
+from mbs.linearised.bands import film_share, law_bands, with_reduction
 from mbs.linearised.dynamic import LostMode
 from mbs.linearised.linear import checked_response, peak_places, responses, with_peaks
 from mbs.linearised.modes import StateModes, UndampedModes, energy_shares, state_modes, undamped_modes
+from mbs.linearised.reduction import ReductionPart, reduction_part, undamped_part
 from mbs.linearised.sweep_result import BearingSweep, ComplexSweep, ResponseSweep, Sweep, UndampedSweep, straightened
 from mbs.linearised.tracking import Match, ModeSet, compose, match, numbers, tracks
 from mbs.linearised.validity import DynamicLoad, dynamic_loads
@@ -341,6 +342,7 @@ class _Recorded:
     complex_errors: FloatArray
     bearing_errors: FloatArray
     by_films: FloatArray
+    reduction: FloatArray
     spread: PitchSpread
 
 
@@ -373,20 +375,25 @@ def _record(point: Point) -> _Recorded:
     )
 
 
-def _errors(point: Point) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Bands of undamped frequencies (n,), complex modes (2, modes) and bearings (2, bearings), and parts by films.
+def _errors(point: Point) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Bands of undamped frequencies (n,), complex modes (2, modes) and bearings (2, bearings), and two parts of them.
 
-    The parts are those of the bands of complex modes, (2, modes). NaN if unknown.
+    The parts of the bands of complex modes are those by films, and what bodies leave out, (2, modes) each. NaN if
+    unknown.
     """
-    n, kept, states = point.balance.system.size, point.kept, point.states
+    n, kept, states, system = point.balance.system.size, point.kept, point.states, point.balance.system
     laws = law_bands(point.balance)
+    vectors = states.right[:n, kept], states.left[kept, n : 2 * n]
+    reduction = reduction_part(system, point.damped.eigenvalues, *vectors)
+    parts = np.full((2, kept.size), np.nan) if reduction is None else np.array(reduction)
     if laws is None:
         shape = (2, bearing_parts(point.balance).size)
         unknown = np.full((2, kept.size), np.nan)
-        return np.full(n, np.nan), unknown, np.full(shape, np.nan), unknown
-    damped = laws.of_modes(point.damped.eigenvalues, states.right[:n, kept], states.left[kept, n : 2 * n])
-    undamped = laws.of_undamped(point.undamped.frequency, point.undamped.shapes)
-    return undamped, np.array([damped.frequency, damped.damping_ratio]), laws.of_bearings(), damped.by_films
+        return np.full(n, np.nan), unknown, np.full(shape, np.nan), unknown, parts
+    damped = with_reduction(laws.of_modes(point.damped.eigenvalues, *vectors), reduction)
+    found = point.undamped.frequency, point.undamped.shapes
+    undamped = laws.of_undamped(*found) + np.abs(undamped_part(system, *found)) * found[0]
+    return undamped, np.array([damped.frequency, damped.damping_ratio]), laws.of_bearings(), damped.by_films, parts
 
 
 def _peaks(axis: FloatArray, size: FloatArray) -> list[FloatArray]:
@@ -467,13 +474,14 @@ def _damped(points: Sequence[_Recorded], links: Sequence[Along], here: IntArray)
     values = np.full(shape, complex(np.nan, np.nan))
     whirl, sure = np.full(shape, np.nan), np.full(shape, np.nan)
     shares = np.full((points[0].complex_shares.shape[0], *shape), np.nan)
-    errors, spreads = np.full((2, *shape), np.nan), np.full((2, *shape), np.nan)
+    errors, spreads, reduction = (np.full((2, *shape), np.nan) for _ in range(3))
     for index, (point, row) in enumerate(zip(points, order, strict=True)):
         there = np.nonzero(row >= 0)[0]
         values[index, there] = point.eigenvalues[row[there]]
         whirl[index, there] = point.whirl[row[there]]
         shares[:, index, there] = point.complex_shares[:, row[there]]
         errors[:, index, there] = point.complex_errors[:, row[there]]
+        reduction[:, index, there] = point.reduction[:, row[there]]
         spreads[0, index, there] = point.spread.complex_frequency[row[there]]
         spreads[1, index, there] = point.spread.complex_damping_ratio[row[there]]
         sure[index, there] = 1.0
@@ -493,6 +501,7 @@ def _damped(points: Sequence[_Recorded], links: Sequence[Along], here: IntArray)
         spreads[0],
         spreads[1],
         lost,
+        ReductionPart(*reduction),
     )
 
 

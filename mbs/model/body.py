@@ -90,6 +90,11 @@ class Body:
         Surface of the body, for pictures of its shape; None where that is not known.
     gravity : array, shape (n, 3), or None
         Load on the coordinates by gravity along x, y, z of 1 m/s2 [kg or kg m]; None where `mbs.model.system` finds it.
+    cutoff : float
+        Frequency above which modes of the body are left out [Hz]; infinite where none are.
+    left_out : array, shape (n, n), or None
+        What these add to the mass where they follow slowly, by the square of the frequency, see
+        `mbs.linearised.reduction` [s2 times the unit of the mass]; None where that is not known.
     """
 
     name: str
@@ -104,6 +109,8 @@ class Body:
     line: tuple[Frame, ...] = ()
     skin: Skin | None = None
     gravity: FloatArray | None = None
+    cutoff: float = math.inf
+    left_out: FloatArray | None = None
 
     @property
     def size(self) -> int:

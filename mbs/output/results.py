@@ -280,6 +280,9 @@ BAND = "band, either way, by errors of known size, of"
 STEP_ERROR = {"units": "dB", "long_name": "estimated error of the level by the step, from parts with half of it"}
 """Attributes of the variable `step_error` of runs in time."""
 
+REDUCED = "what modes of bodies above their cut-off leave out, true less found, to first order,"
+"""Parts of modes of reduced bodies, as `LEFT_OUT`."""
+
 LEFT_OUT = "what the film law with memory leaves out, true less found, to first order,"
 """How datasets call the part of the film law; it is NaN where it is not known."""
 
@@ -384,6 +387,7 @@ def modes_dataset(found: Modes, balance: Equilibrium) -> xr.Dataset:
     frequency_band, damping_band = (none, none) if found.bands is None else found.bands[:2]
     film_share = 0.0 if found.bands is None else found.bands.film_share
     frequency_law, damping_law = (none, none) if found.film_law is None else found.film_law
+    frequency_rest, damping_rest = (none, none) if found.reduction is None else found.reduction
     variables = {
         "frequency": ("mode", found.frequency, {"units": "Hz", "long_name": "|eigenvalue|/(2 pi)"}),
         "damping_ratio": ("mode", found.damping_ratio, {"units": "1", "long_name": "damping ratio"}),
@@ -394,6 +398,12 @@ def modes_dataset(found: Modes, balance: Equilibrium) -> xr.Dataset:
             "mode",
             damping_law,
             {"units": "1", "long_name": f"{LEFT_OUT} of the damping ratio"},
+        ),
+        "frequency_reduction": ("mode", frequency_rest, {"units": "Hz", "long_name": f"{REDUCED} of the frequency"}),
+        "damping_ratio_reduction": (
+            "mode",
+            damping_rest,
+            {"units": "1", "long_name": f"{REDUCED} of the damping ratio"},
         ),
         "eigenvalue_real": ("mode", found.eigenvalues.real, {"units": "1/s", "long_name": "decay"}),
         "eigenvalue_imaginary": ("mode", found.eigenvalues.imag, {"units": "rad/s", "long_name": "damped frequency"}),

@@ -15,7 +15,7 @@ from mbs.linearised.critical import CriticalSpeed, OrderResponse, orbit, turning
 from mbs.linearised.sweep_result import Sweep
 from mbs.model.elements import Sensor
 from mbs.model.system import System
-from mbs.output.results import BAND
+from mbs.output.results import BAND, REDUCED
 
 _Entry = tuple[tuple[str, ...], Any, dict[str, str]]
 """A variable as xarray takes it."""
@@ -136,6 +136,20 @@ VARIABLES = (
         f"{BAND} the damping ratio of the complex mode",
         DAMPED,
         lambda sweep: sweep.damped.damping_ratio_error,
+    ),
+    Variable(
+        "complex_frequency_reduction",
+        "Hz",
+        f"{REDUCED} of the frequency of the complex mode",
+        DAMPED,
+        lambda sweep: sweep.damped.reduction.frequency,
+    ),
+    Variable(
+        "complex_damping_ratio_reduction",
+        "1",
+        f"{REDUCED} of the damping ratio of the complex mode",
+        DAMPED,
+        lambda sweep: sweep.damped.reduction.damping_ratio,
     ),
     Variable(
         "complex_frequency_spread",

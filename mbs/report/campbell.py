@@ -22,6 +22,7 @@ from mbs.analyses.modes import ModesResult
 from mbs.linearised.sweep_result import Sweep
 from mbs.output.files import RESULT
 from mbs.output.model_text import band_lines, clean, film_law_line, film_lines, free_words
+from mbs.output.reduction_text import reduction_lines
 from mbs.output.result_text import kinds, share_words
 from mbs.scene.fields import HERTZ
 
@@ -73,6 +74,12 @@ def mode_table(found: ModesResult, highest: float) -> Markup:
             for line in (
                 *band_lines(found.model, 0.0 if bands is None else bands.film_share),
                 *film_law_line(found.model, law is not None),
+                *reduction_lines(
+                    found.balance.system,
+                    all_modes.frequency[listed],
+                    all_modes.damping_ratio[listed],
+                    None if all_modes.reduction is None else all_modes.reduction.of(listed),
+                ),
             )
         ),
         *film_lines(found.errors, all_modes.frequency[listed]),

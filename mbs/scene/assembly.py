@@ -451,6 +451,31 @@ def assemble(
     )
 
 
+def with_bodies(model: Model, bodies: Sequence[BodySpec]) -> Model:
+    """The model with other reductions of its bodies: with the same places, elements and laws.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law, not in operation.
+    bodies : sequence of RigidSpec, ShaftSpec, FlexibleSpec or Body
+        Bodies in the order of the scene.
+
+    Raises
+    ------
+    InputError
+        If one cannot be reduced so.
+    """
+    scene = dataclasses.replace(model.scene, bodies=bodies)
+    built = build_bodies(with_places(scene.bodies, scene.unbalances))
+    names = {body.name for body in built}
+    own_bodies = [body for body in model.system.bodies if body.name not in names]
+    turning, _ = turning_loads(scene.unbalances, scene.excitations, Places(built))
+    elements = [connected.element for connected in model.system.elements]
+    system = System((*built, *own_bodies), scene.springs, scene.loads, elements, turning, scene.gravity)
+    return dataclasses.replace(model, scene=scene, system=system, found={})
+
+
 def _opened(given: GivenMaps) -> MapSet | None:
     """Maps, or the paths of their files, as a set."""
     if given is None or isinstance(given, MapSet):

@@ -254,7 +254,7 @@ def _cut(body: BodySpec, cutoff: float) -> BodySpec:
     from mbs.flexible.reduced_file import read_reduced
 
     if isinstance(body, ShaftSpec):
-        return body if body.cutoff is None else dataclasses.replace(body, cutoff=cutoff)
+        return body if body.cutoff is None else dataclasses.replace(body, cutoff=cutoff, cutoff_stated=True)
     if not isinstance(body, FlexibleSpec):
         return body
     if isinstance(body.source, ReductionPlan):

@@ -99,6 +99,8 @@ class ShaftSpec:
         Length of an element [m]; None: as the cut-off needs it.
     damping_ratio : float
         Damping ratio of the modes of the free shaft at rest.
+    cutoff_stated : bool
+        Whether its cut-off is stated; one that is not is raised in linear analyses until their modes no longer feel it.
     files : tuple of Path
         Files that were read for it; they are no part of what it is.
 
@@ -118,6 +120,7 @@ class ShaftSpec:
     spin: float = 0.0
     largest_element: float | None = None
     damping_ratio: float = 0.0
+    cutoff_stated: bool = True
     files: Sequence[Path] = field(default=(), compare=False)
 
     def __post_init__(self) -> None:

@@ -80,6 +80,7 @@ def _words(spec: object) -> str:
     mass = sum(part.mass for part in spec.sections)
     discs = sum(disc.inertia.mass for disc in spec.discs)
     cutoff = "no reduction" if spec.cutoff is None else f"modes up to {HERTZ.text(spec.cutoff)} with held places"
+    cutoff += "" if spec.cutoff_stated else ", or higher where modes feel it"
     return f"{LENGTH.text(end - begin, 5)}, {mass:.4g} kg and discs of {discs:.4g} kg, {cutoff}, "
 
 

@@ -6,6 +6,7 @@ import dataclasses
 from collections.abc import Mapping
 from pathlib import Path
 
+from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import LENGTH, Display, short
 from mbs.flexible.shaft_parts import Disc
@@ -20,7 +21,7 @@ BENDING = ("y", "z", "theta_y", "theta_z")
 """Freedoms of a shaft that states none: cylindrical roller bearings hold no axis."""
 
 CUTOFF = 5e3
-"""Cut-off of a shaft that states none [Hz]."""
+"""Cut-off of a shaft that states none [Hz]; none, where the theory of beams does not hold there."""
 
 MOMENTS = ("polar_inertia", "transverse_inertia")
 """Keys of the moments of inertia; both, or none."""
@@ -65,22 +66,30 @@ def read_shaft(
     if len(section.problems) > before or freedoms is None:
         return None
     table = by_lengths({"sections": section.get("sections")})
-    return fields.built(
-        section,
-        lambda: ShaftSpec(
+
+    def made(cutoff: float | None, stated: bool = True) -> ShaftSpec:
+        return ShaftSpec(
             name=name,
             sections=sections,
             freedoms=freedoms,
             frames=frames,
-            cutoff=CUTOFF if cutoff is None else cutoff,
+            cutoff=cutoff,
             discs=discs,
             position=position or ORIGIN,
             spin=float(table) if spin is None else spin,
             largest_element=largest,
             damping_ratio=ratio or 0.0,
+            cutoff_stated=stated,
             files=files,
-        ),
-    )
+        )
+
+    def unstated() -> ShaftSpec:
+        try:
+            return made(CUTOFF, stated=False)
+        except InputError:
+            return made(None)
+
+    return fields.built(section, unstated if cutoff is None else lambda: made(cutoff))
 
 
 def build_shaft(spec: ShaftSpec) -> Body:

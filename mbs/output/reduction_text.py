@@ -1,0 +1,56 @@
+"""Errors of modes by the reduction of bodies, in words."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from mbs.linearised.reduction import REACH, ReductionPart, cut_off, unknown_ends
+from mbs.model.system import System
+from mbs.output.model_text import ROUND_OFF
+from mbs.scene.fields import HERTZ
+
+
+def reduction_lines(system: System, frequency: FloatArray, ratio: FloatArray, part: ReductionPart | None) -> list[str]:
+    """Lines on what the reduction of bodies leaves out of modes; none where no body is reduced.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    frequency, ratio : array, shape (...,)
+        Frequencies [Hz] and damping ratios of the modes that are shown; NaN where there is none.
+    part : ReductionPart or None
+        What is left out of them, of the same shape.
+    """
+    cut = cut_off(system)
+    if not math.isfinite(cut):
+        return []
+    lines = []
+    if part is not None and np.isfinite(frequency).any():
+        sizes = np.abs(np.array(part)) / np.array([frequency, ratio])
+        words = [_largest(size, frequency) for size in np.where(np.array([frequency, ratio]) > ROUND_OFF, sizes, 0.0)]
+        lines.append(
+            f"  reduction: without modes of bodies above {HERTZ.text(cut)}, which change frequencies by up to "
+            f"{words[0]}, damping ratios by up to {words[1]}"
+        )
+        if np.nanmax(frequency) > REACH * cut:
+            lines.append(
+                f"warning: modes above {HERTZ.text(REACH * cut)} meet those that bodies leave out; raise their cut-off"
+            )
+    names = unknown_ends(system)
+    if names:
+        lines.append(
+            f"  reduction: what the end of the file of {', '.join(names)} leaves out is not known; reduce it again to "
+            "know it"
+        )
+    return lines
+
+
+def _largest(sizes: FloatArray, frequency: FloatArray) -> str:
+    """The largest part, and of which mode."""
+    at = int(np.nanargmax(sizes))
+    value = 100.0 * float(sizes.flat[at])
+    return f"{value:.2g} %" + (f" (at {HERTZ.text(float(frequency.flat[at]))})" if value >= 0.01 else "")
