@@ -23,6 +23,7 @@ loaded bearings. ISO 281:2007, Rolling bearings - Dynamic load ratings and ratin
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
@@ -154,6 +155,36 @@ def _with_life(rating: float, total: float, slope: float, power: float) -> Refer
     """Load and life by the sum of the chances to fail; `slope` is that of Weibull's distribution, inverted."""
     life = total**-slope if total > 0.0 else math.inf
     return ReferenceLife(float(rating * life ** (-1.0 / power)), life)
+
+
+def life_of_history(shares: Sequence[float], lives: Sequence[float]) -> float:
+    """Life under operating points that take turns, 1/L = sum of q_i/L_i, in the unit of the lives.
+
+    Parameters
+    ----------
+    shares : sequence of float
+        Shares q_i of the revolutions, not of the time: each is time x speed. They sum to one.
+    lives : sequence of float
+        Lives at the points.
+
+    Raises
+    ------
+    InputError
+        For shares below zero, or that do not sum to one, and for lives that are not above zero.
+
+    Examples
+    --------
+    >>> life_of_history([0.5, 0.5], [100.0, 300.0])
+    150.0
+    """
+    if len(shares) != len(lives) or not shares:
+        raise InputError(f"life, history: got {len(shares)} shares and {len(lives)} lives; allowed: one each")
+    if not (all(share >= 0.0 for share in shares) and abs(math.fsum(shares) - 1.0) < 1e-6):
+        raise InputError(f"life, shares: got {list(shares)!r:.80}; allowed: >= 0, with a sum of 1, of the revolutions")
+    if not all(life > 0.0 for life in lives):
+        raise InputError(f"life, lives: got {list(lives)!r:.80}; allowed: above 0")
+    total = math.fsum(share / life for share, life in zip(shares, lives, strict=True))
+    return 1.0 / total if total > 0.0 else math.inf
 
 
 def required_viscosity(speed: float, pitch_diameter: float) -> float:

@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from ehdmaps.arrays import FloatArray
@@ -22,7 +23,6 @@ from mbs.analyses.operating import held
 from mbs.analyses.ramp import recorded_run, run_course, silent_run
 from mbs.analyses.sensors import followed_orders
 from mbs.model.elements import Sensor
-from mbs.output.campbell_table import variants_dataset
 from mbs.output.files import described
 from mbs.scene.assembly import Model, choice_attributes
 from mbs.scene.choices import VARIED, LawChoice, Subject
@@ -359,3 +359,53 @@ def _variant(change: Variation | None, pair: tuple[int, int], outcomes: Sequence
         return Variant(key, value, (), "the two runs have no speeds in common", {})
     outside = {name: sum(entry.outside.get(name, 0) for entry in made) for entry in made for name in entry.outside}
     return Variant(key, value, differences, "", outside)
+
+
+_QUANTITIES = (
+    ("median_difference", "median", "median of the differences of the sum level at the same speed"),
+    ("low_difference", "low", "5 % of the windows differ by less"),
+    ("high_difference", "high", "95 % of the windows differ by less"),
+    ("energy_difference", "energy", "difference of the mean energies of all windows"),
+    ("highest_difference", "highest", "difference of the highest sum levels, at any speed"),
+)
+
+
+def variants_dataset(rows: Sequence[Variant], sensors: Sequence[Sensor]) -> xr.Dataset:
+    """The table of all changes and sensors; NaN where there is no result.
+
+    Parameters
+    ----------
+    rows : sequence of Variant
+        The base and all changes.
+    sensors : sequence of Sensor
+        The sensors, in the order of `Variant.differences`.
+    """
+    variables = {
+        name: (
+            ("variant", "sensor"),
+            np.array(
+                [
+                    [getattr(entry, part) for entry in row.differences] if row.differences else [np.nan] * len(sensors)
+                    for row in rows
+                ],
+                dtype=np.float64,
+            ),
+            {"units": "dB", "long_name": f"{words}, second law minus first"},
+        )
+        for name, part, words in _QUANTITIES
+    }
+    texts = {
+        name: ("variant", [str(getattr(row, name)) for row in rows], {"long_name": words})
+        for name, words in (
+            ("key", "what was changed; empty for the base"),
+            ("value", "to what it was changed"),
+            ("problem", "why there is no result"),
+        )
+    }
+    calls = np.array([sum(row.outside.values()) for row in rows], dtype=np.int64)
+    outside = {"outside_calls": ("variant", calls, {"units": "1", "long_name": "law calls outside the map"})}
+    return xr.Dataset(
+        {**variables, **texts, **outside},
+        coords={"sensor": [sensor.name for sensor in sensors]},
+        attrs={"reference": "; ".join(dict.fromkeys(Reference.of(sensor).text for sensor in sensors))},
+    )

@@ -420,7 +420,7 @@ def variants_figure(title: str, dataset: xr.Dataset, labels: Sequence[str]) -> F
     title : str
         Heading of the page.
     dataset : xarray.Dataset
-        The table, see `mbs.output.campbell_table`.
+        The table, see `mbs.laboratory.variants`.
     labels : sequence of str
         The two laws.
     """

@@ -17,6 +17,7 @@ from mbs.life import (
     a_iso,
     ball_reference_life,
     fatigue_limit,
+    life_of_history,
     required_viscosity,
     roller_reference_life,
 )
@@ -91,6 +92,14 @@ def test_a_iso_over_its_range() -> None:
             a_iso(*wrong)
     with pytest.raises(InputError, match="allowed: ball, roller"):
         a_iso(1.0, 0.1, "needle")
+
+
+def test_a_history_counts_turns() -> None:
+    """Palmgren and Miner: half of the turns at each of two loads."""
+    assert life_of_history([0.25, 0.75], [100.0, math.inf]) == pytest.approx(400.0)
+    for shares, lives in (([0.5], [1.0, 2.0]), ([0.5, 0.6], [1.0, 2.0]), ([1.0], [0.0]), ([], [])):
+        with pytest.raises(InputError, match=r"life, (history|shares|lives): got"):
+            life_of_history(shares, lives)
 
 
 def test_limits_of_viscosity_and_fatigue() -> None:
