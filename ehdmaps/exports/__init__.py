@@ -3,6 +3,7 @@
 | module | idea |
 |---|---|
 | `target` | what a target of `ehdmaps export` is, which ones are registered; axes, signs, range, provenance; folders |
+| `map_curves` | curves over load of a map, at any speed and temperature; for pictures and reports, too |
 | `csv` | curves over load of a law as a table |
 | `mat` | points and law of a map as a struct for MATLAB and Octave |
 | `resampled` | the law on a grid that linear interpolation reads |

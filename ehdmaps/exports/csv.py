@@ -14,8 +14,9 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
+from ehdmaps.exports.map_curves import curves, film_between, rough_layers
 from ehdmaps.exports.target import Target
-from ehdmaps.maps.emap import EHDMap, curves, film_between, rough_layers
+from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.rough_layer import FILM_PARAMETER, FILM_SHARE, RoughLayer, load_sharing
 from ehdmaps.maps.usable import known_grid

@@ -7,7 +7,7 @@ schema         names, units and types of everything in a map file
 records        contacts, bearing and oil from the attributes of a map; stiffness and damping by a structural law
 reading        a map file as datasets: whether it is a map, and whether it was changed
 edges          where the points of a map are known; films beyond its speeds and temperatures
-emap           `EHDMap`, `open_map`: a map file as a value; its curves over load, dense, for charts and tables
+emap           `EHDMap`, `open_map`: a map file as a value
 usable         whether a law can be made from a map
 film_field     `FilmField`: film of each contact at any load, speed and temperature; down to which load it is known
 grid_field     the film field of the map's own grid, and of lines that its contacts share or have alone

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
 import ehdmaps
-from ehdmaps.maps.emap import curves, rough_layers
+from ehdmaps.exports.map_curves import curves, rough_layers
 
 PLACES, CONTACT = 500, "inner"
 FIELDS = ("approach", "stiffness", "damping")

@@ -10,6 +10,7 @@ import pytest
 import xarray as xr
 
 from ehdmaps.errors import MapError
+from ehdmaps.exports.map_curves import curves, law_field
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.make.assemble import assemble, placed
 from ehdmaps.jobs.make.generate import generate, summary, write_map
@@ -21,7 +22,7 @@ from ehdmaps.jobs.show.compare import compare, comparison_json, comparison_text
 from ehdmaps.jobs.show.describe import describe
 from ehdmaps.jobs.show.plot import page_legend, plot_map
 from ehdmaps.maps import schema
-from ehdmaps.maps.emap import EHDMap, curves, law_field, open_map
+from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.reading import validate
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver

@@ -7,11 +7,12 @@ import pytest
 
 from ehdmaps.errors import MapError, OutsideMapError
 from ehdmaps.exports.csv import Chosen, table
+from ehdmaps.exports.map_curves import film_between
 from ehdmaps.exports.resampled import differences, resampled
 from ehdmaps.jobs import cli
 from ehdmaps.jobs.make.report import reach_lines
 from ehdmaps.maps.edges.reach import known_runs, reach_of
-from ehdmaps.maps.emap import EHDMap, film_between
+from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.records import DERIVED
 from ehdmaps.physics.oil_supply import OilSupply

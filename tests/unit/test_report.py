@@ -13,10 +13,11 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import InputError
+from ehdmaps.exports.map_curves import curves
 from ehdmaps.jobs.cli import main
 from ehdmaps.jobs.show.map_charts import MapCurves
 from ehdmaps.jobs.show.map_report import map_report
-from ehdmaps.maps.emap import EHDMap, curves, open_map
+from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.physics.solution import Status
 from ehdmaps.report.chart import Axis, Chart, Curve, Points, figure, linear_axis, log_axis, path_of, symlog_axis
 from ehdmaps.report.page import Markup, Section, document, escaped, joined, tag, write_report

@@ -14,8 +14,9 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
+from ehdmaps.exports.map_curves import curves, film_between, rough_layers
 from ehdmaps.figures import WARNING, typeset
-from ehdmaps.maps.emap import EHDMap, curves, film_between, rough_layers
+from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import FilmField, known_at
 from ehdmaps.maps.rough_layer import BOUNDARY, FILM_PARAMETER, MIXED
 from ehdmaps.physics.contact import LineContact

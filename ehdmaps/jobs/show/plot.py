@@ -16,6 +16,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, NullLocator
 
+from ehdmaps.exports.map_curves import law_field
 from ehdmaps.figures import keep_within, typeset
 from ehdmaps.jobs.make.report import span, status_counts
 from ehdmaps.jobs.show.plot_curves import (
@@ -32,7 +33,7 @@ from ehdmaps.jobs.show.plot_curves import (
     spread,
 )
 from ehdmaps.maps import schema
-from ehdmaps.maps.emap import EHDMap, law_field
+from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.records import record_from_json
 from ehdmaps.outputs import write_figure
 from ehdmaps.physics.closed_form import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM

@@ -13,8 +13,9 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullLocator
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.exports.map_curves import curves
 from ehdmaps.figures import WARNING
-from ehdmaps.maps.emap import EHDMap, curves
+from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import FilmField, known_at
 from ehdmaps.physics.solution import Status
 from ehdmaps.units import LOAD, Display
