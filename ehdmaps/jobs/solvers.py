@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 from ehdmaps.ehl.limits import SETTING_LIMITS
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.heat import ISOTHERMAL, PHYSICS, THERMAL
 from ehdmaps.physics.rheology import SHEAR_LIMITS, SHEARS
@@ -18,6 +17,7 @@ from ehdmaps.physics.solution import ContactSolver, ContactSolverDefaults
 from ehdmaps.units import Display, short
 
 if TYPE_CHECKING:
+    from ehdmaps.jobs.job import Job
     from ehdmaps.table.solver import TableSolver
 
 SOLVED, TABLE = "solved", "table"
