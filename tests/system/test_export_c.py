@@ -212,14 +212,15 @@ def test_refused(refusing, small_map):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("outside", "calls"), [("error", "100000"), ("clamp", "30000")])
+@pytest.mark.parametrize(("outside", "calls"), [("error", "30000"), ("clamp", "10000")])
 def test_hostile(small_map, tmp_path, outside, calls):
     """Neither the address sanitizer nor that of undefined behaviour finds anything, whatever numbers come."""
     folder = exported(small_map, tmp_path / "c", "--outside", outside)
     shutil.copy(DATA / "hostile.c", folder)
     program = compiled(
-        folder, "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all", str(folder / "hostile.c"), name="run"
-    )
+        folder, "-O0", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all", str(folder / "hostile.c"),
+        name="run",
+    )  # fmt: skip
     result = subprocess.run([program, calls], capture_output=True, text=True, check=False)
     assert result.returncode == 0, result.stdout + result.stderr
 
@@ -285,25 +286,22 @@ def corner(tmp_path_factory):
     return path
 
 
-@pytest.mark.parametrize(("outside", "options"), [("clamp", ["--centrifugal"]), ("asymptote", [])])
-def test_loads_end_where_points_of_the_map_are_missing(corner, tmp_path, outside, options):
-    folder = exported(corner, tmp_path / "c", "--outside", outside, *options)
+def test_loads_end_where_points_of_the_map_are_missing(corner, tmp_path):
+    folder = exported(corner, tmp_path / "c", "--outside", "clamp", "--centrifugal")
     kernel = Kernel(compiled(folder, "-shared", "-fPIC", "-O0"))  # the tables are long
-    law = open_map(corner).law("series", outside)
+    law = open_map(corner).law("series", "clamp")
     ends = [law.known_load(u, T) for u, T in ((2.4, 313.15), (1.7, 316.0), (1.2, 313.15), (-0.1, 340.0))]
     assert ends[0] < ends[1] < ends[2] == pytest.approx(ends[3], rel=1e-14)  # round-off
     for u, T in ((2.4, 313.15), (1.7, 316.0), (3.0, 310.0), (-0.1, 340.0)):
-        for q in (0.0, 3e3) if options else (0.0,):
+        for q in (0.0, 3e3):
             assert_law(kernel, law, u, T, q)
-    if not options:
-        return
     assert kernel.at(2.4, 313.15, 0.99 * ends[0]) == 0
     assert kernel.at(2.4, 313.15, 1.01 * ends[0]) == BAD_CENTRIFUGAL
     assert kernel.at(1.2, 313.15, 1.01 * ends[0]) == 0
 
 
 def test_a_load_that_is_not_known_is_refused(corner, tmp_path):
-    kernel = Kernel(compiled(exported(corner, tmp_path / "c"), "-shared", "-fPIC"))
+    kernel = Kernel(compiled(exported(corner, tmp_path / "c"), "-shared", "-fPIC", "-O0"))
     law = open_map(corner).law("series", "clamp")
     for u, status in ((2.4, ABOVE_LOAD), (1.2, 0)):
         delta = law.at(2.4, 313.15).point.held_approach + 1e-6
