@@ -278,10 +278,10 @@ def test_steps_that_resolve_nothing_are_said_and_what_the_method_takes(here, cap
     text = read_scene("nu308_rigid").text.replace('duration = "0.2 s"', 'duration = "10 ms"')
     (here / "fine.toml").write_text(text)
     (here / "long.toml").write_text(text.replace('"20 us"', '"5 ms"').replace('sample = "0.1 ms"', 'sample = "5 ms"'))
-    _, out, _ = run(capsys, "runup", "long.toml")
+    _, out, _ = run(capsys, "runup", "long.toml", "--law", "hertz")
     assert "warning: steps of 5 ms do not resolve what moves here: the lowest mode of the system is at 41.6 Hz" in out
     assert "it is excited with up to 157.6 Hz" in out and "take steps of 635 us or less" in out
-    _, out, _ = run(capsys, "runup", "fine.toml")
+    _, out, _ = run(capsys, "runup", "fine.toml", "--law", "hertz")
     assert "warning: steps" not in out
     assert "steps of 20 us: 10 a period at 5000 Hz; numerical damping (spectral radius 0.8) takes 47.7 % at 2500" in out
 
@@ -328,7 +328,10 @@ def test_no_equilibrium_is_status_1(here, capsys):
 @pytest.mark.slow
 def test_as_a_module(here):
     result = subprocess.run(
-        [sys.executable, "-m", "mbs", "statics", "nu308_rigid"], capture_output=True, text=True, check=True
+        [sys.executable, "-m", "mbs", "statics", "nu308_rigid", "--law", "hertz"],
+        capture_output=True,
+        text=True,
+        check=True,
     )
     assert "141.421 N" in result.stdout
 

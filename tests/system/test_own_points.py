@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 import zipfile
 from collections.abc import Callable
@@ -44,16 +45,26 @@ ORIGINS = ["table", "solved"]
 """Laws that know more than points: by the film table, or by refinement lines."""
 
 
-@pytest.fixture(scope="module", params=ORIGINS)
-def maps(request, tmp_path_factory) -> dict[str, Path]:
+@pytest.fixture(scope="module")
+def made_maps(tmp_path_factory) -> Callable[[str], dict[str, Path]]:
+    """What makes the maps of an origin, once for all tests, in whatever order pytest has them."""
+    return functools.cache(lambda origin: make_maps(origin, tmp_path_factory.mktemp(origin)))
+
+
+@pytest.fixture(params=ORIGINS)
+def maps(request, made_maps) -> dict[str, Path]:
     """A map as it is made, with changed films, and with these films in a map that never had any others."""
-    folder = tmp_path_factory.mktemp(request.param)
+    return made_maps(request.param)
+
+
+def make_maps(origin: str, folder: Path) -> dict[str, Path]:
+    """Make these maps."""
     paths = {name: folder / name / "nu308.nc" for name in ("made", "changed", "plain")}
     for path in paths.values():
         path.parent.mkdir()
-    job = replace(JOB, law_check=0, solver_options={"films": request.param})
+    job = replace(JOB, law_check=0, solver_options={"films": origin})
     made = generate(job, paths["made"], workers=1)
-    assert (made.backbone is not None) == (request.param == "solved")
+    assert (made.backbone is not None) == (origin == "solved")
     own = made.dataset.drop_vars(list(DERIVED))
     own = own.assign({name: own[name] * factor for name, factor in FACTORS.items()})
     del own.attrs[schema.CHECKSUM]
