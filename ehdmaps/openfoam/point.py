@@ -34,7 +34,7 @@ from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.point.film_formulas import hamrock_dowson_central, kapitza_film, point_groups
 from ehdmaps.physics.rheology import wall_stress_note
-from ehdmaps.physics.solution import Status, peak_sampling_error
+from ehdmaps.physics.solution import UNKNOWN, Estimate, Status, peak_sampling_error
 
 ELLIPTICITIES = (1.0, 12.0)
 """Ellipticities that are solved; a little below a circle is one."""
@@ -74,9 +74,6 @@ class PointFilm:
         k, c of slow motion [N/m], [N s/m].
     film_compliance, loss_compliance : float
         1/k - 1/k_dry [m/N], c/k^2 [m s/N].
-    approach_error, film_offset_error, central_film_error, minimum_film_error, max_pressure_error, stiffness_error, \
-damping_error, film_compliance_error, loss_compliance_error : float
-        Estimated numerical errors, relative, from the difference of both meshes.
     steps : int
         Newton's steps on all meshes.
     solve_seconds : float
@@ -94,24 +91,15 @@ damping_error, film_compliance_error, loss_compliance_error : float
     load_number: float = math.nan
     oil_number: float = math.nan
     mesh: tuple[int, int, int] = (0, 0, 0)
-    approach: float = math.nan
-    film_offset: float = math.nan
-    central_film: float = math.nan
-    minimum_film: float = math.nan
-    max_pressure: float = math.nan
-    stiffness: float = math.nan
-    damping: float = math.nan
-    film_compliance: float = math.nan
-    loss_compliance: float = math.nan
-    approach_error: float = math.nan
-    film_offset_error: float = math.nan
-    central_film_error: float = math.nan
-    minimum_film_error: float = math.nan
-    max_pressure_error: float = math.nan
-    stiffness_error: float = math.nan
-    damping_error: float = math.nan
-    film_compliance_error: float = math.nan
-    loss_compliance_error: float = math.nan
+    approach: Estimate = UNKNOWN
+    film_offset: Estimate = UNKNOWN
+    central_film: Estimate = UNKNOWN
+    minimum_film: Estimate = UNKNOWN
+    max_pressure: Estimate = UNKNOWN
+    stiffness: Estimate = UNKNOWN
+    damping: Estimate = UNKNOWN
+    film_compliance: Estimate = UNKNOWN
+    loss_compliance: Estimate = UNKNOWN
     steps: int = 0
     solve_seconds: float = 0.0
     viscosity_extrapolated: bool = False
@@ -339,24 +327,15 @@ def _film(
         "; ".join(filter(None, notes)),
         *moes,
         mesh,
-        approach=approach,
-        film_offset=offset,
-        central_film=central,
-        minimum_film=results.minimum_film[1],
-        max_pressure=results.max_pressure[1],
-        stiffness=1.0 / compliance,
-        damping=loss / compliance**2,
-        film_compliance=film_compliance,
-        loss_compliance=loss,
-        approach_error=offset_error * offset / max(abs(approach), 1e-300),
-        film_offset_error=offset_error,
-        central_film_error=central_error,
-        minimum_film_error=least_error,
-        max_pressure_error=peak_error,
-        stiffness_error=compliance_error,
-        damping_error=loss_error + 2.0 * compliance_error,
-        film_compliance_error=compliance_error * compliance / max(abs(film_compliance), 1e-300),
-        loss_compliance_error=loss_error,
+        approach=Estimate(approach, offset_error * offset / max(abs(approach), 1e-300)),
+        film_offset=Estimate(offset, offset_error),
+        central_film=Estimate(central, central_error),
+        minimum_film=Estimate(results.minimum_film[1], least_error),
+        max_pressure=Estimate(results.max_pressure[1], peak_error),
+        stiffness=Estimate(1.0 / compliance, compliance_error),
+        damping=Estimate(loss / compliance**2, loss_error + 2.0 * compliance_error),
+        film_compliance=Estimate(film_compliance, compliance_error * compliance / max(abs(film_compliance), 1e-300)),
+        loss_compliance=Estimate(loss, loss_error),
         steps=results.iterations,
         solve_seconds=seconds,
         viscosity_extrapolated=_extrapolated(results.max_pressure[1] * (1.0 + peak_error), state),

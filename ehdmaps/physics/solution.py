@@ -88,6 +88,48 @@ def peak_sampling_error(position: FloatArray, pressure: FloatArray, cusp: bool) 
     return top / highest - 1.0
 
 
+class Estimate(float):
+    """A number with its estimated numerical error, relative to it.
+
+    It is the number: what is reckoned from it is a plain one, whose error has to be found anew.
+
+    Parameters
+    ----------
+    value : float
+        The number.
+    error : float
+        Error over its size; NaN where that is not known.
+
+    Examples
+    --------
+    >>> film = Estimate(0.45e-6, 0.02)
+    >>> film, film.error, type(2.0 * film) is float
+    (4.5e-07, 0.02, True)
+    """
+
+    __slots__ = ("_error",)
+    _error: float
+
+    def __new__(cls, value: float, error: float) -> Estimate:
+        """Keep both."""
+        self = super().__new__(cls, value)
+        self._error = float(error)
+        return self
+
+    @property
+    def error(self) -> float:
+        """Error over its size."""
+        return self._error
+
+    def __reduce__(self) -> tuple[type[Estimate], tuple[float, float]]:
+        """For other processes."""
+        return Estimate, (float(self), self._error)
+
+
+UNKNOWN = Estimate(math.nan, math.nan)
+"""A number that was not found."""
+
+
 class Status(IntEnum):
     """Outcome of solving a point; the values are the flag_values of the map file."""
 

@@ -25,7 +25,7 @@ from ehdmaps.physics.closed_form import CONTINUUM, NO_CONTINUUM, too_thick
 from ehdmaps.physics.hertz import LARGEST_PRESSURE, half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups
-from ehdmaps.physics.solution import Status
+from ehdmaps.physics.solution import UNKNOWN, Estimate, Status
 from ehdmaps.physics.surface import CrownedProfile
 from ehdmaps.point.newton import PointState, newton, start_about
 from ehdmaps.point.roller_grid import (
@@ -121,7 +121,7 @@ class FiniteRoller:
 
 @dataclass(frozen=True, eq=False)
 class RollerSolution:
-    """Film of a roller. Numbers are NaN where the status is not usable.
+    """Film of a roller. Numbers with their errors, which are NaN where the status is not usable.
 
     Attributes
     ----------
@@ -147,9 +147,6 @@ class RollerSolution:
         Distance of the smallest film from the middle of the roller [m].
     max_pressure : float
         [Pa].
-    film_offset_error, stiffness_error, damping_error, film_compliance_error, central_film_error, middle_film_error, \
-minimum_film_error, max_pressure_error : float
-        Estimated numerical errors, relative to the value beside them.
     steps : int
         Newton steps.
     solve_seconds : float
@@ -166,24 +163,16 @@ minimum_film_error, max_pressure_error : float
     roller: FiniteRoller
     load_number: float = math.nan
     oil_number: float = math.nan
-    film_offset: float = math.nan
-    stiffness: float = math.nan
-    damping: float = math.nan
+    film_offset: Estimate = UNKNOWN
+    stiffness: Estimate = UNKNOWN
+    damping: Estimate = UNKNOWN
     dry_stiffness: float = math.nan
-    film_compliance: float = math.nan
-    central_film: float = math.nan
-    middle_film: float = math.nan
-    minimum_film: float = math.nan
+    film_compliance: Estimate = UNKNOWN
+    central_film: Estimate = UNKNOWN
+    middle_film: Estimate = UNKNOWN
+    minimum_film: Estimate = UNKNOWN
     minimum_place: float = math.nan
-    max_pressure: float = math.nan
-    film_offset_error: float = math.nan
-    stiffness_error: float = math.nan
-    damping_error: float = math.nan
-    film_compliance_error: float = math.nan
-    central_film_error: float = math.nan
-    middle_film_error: float = math.nan
-    minimum_film_error: float = math.nan
-    max_pressure_error: float = math.nan
+    max_pressure: Estimate = UNKNOWN
     steps: int = 0
     solve_seconds: float = 0.0
     field: PointField | None = dataclasses.field(default=None, repr=False)
@@ -295,24 +284,18 @@ def solve_roller(
         status,
         reason,
         *where,
-        film_offset=values.film_offset * film,
-        stiffness=values.stiffness * spring,
-        damping=values.damping * spring * half / entrainment_speed,
+        film_offset=Estimate(values.film_offset * film, errors.film_offset),
+        stiffness=Estimate(values.stiffness * spring, errors.stiffness),
+        damping=Estimate(values.damping * spring * half / entrainment_speed, errors.damping),
         dry_stiffness=spring / (values.compliance - values.film_compliance),
-        film_compliance=values.film_compliance / spring,
-        central_film=values.central_film * film,
-        middle_film=middle * film,
-        minimum_film=values.minimum_film * film,
+        film_compliance=Estimate(values.film_compliance / spring, errors.film_compliance),
+        central_film=Estimate(values.central_film * film, errors.central_film),
+        middle_film=Estimate(
+            middle * film, max(2.0 * left * abs(middles[1] - middles[0]) / middle, errors.central_film)
+        ),
+        minimum_film=Estimate(values.minimum_film * film, errors.minimum_film),
         minimum_place=half * float(nodes.y[int(np.argmin(across))]),
-        max_pressure=values.max_pressure * peak,
-        film_offset_error=errors.film_offset,
-        stiffness_error=errors.stiffness,
-        damping_error=errors.damping,
-        film_compliance_error=errors.film_compliance,
-        central_film_error=errors.central_film,
-        middle_film_error=max(2.0 * left * abs(middles[1] - middles[0]) / middle, errors.central_film),
-        minimum_film_error=errors.minimum_film,
-        max_pressure_error=errors.max_pressure,
+        max_pressure=Estimate(values.max_pressure * peak, errors.max_pressure),
         steps=steps,
         solve_seconds=seconds(),
         field=PointField(half * nodes.x, half * nodes.y, peak * states[1].pressure, film * states[1].film),

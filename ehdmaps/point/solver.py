@@ -21,7 +21,7 @@ from ehdmaps.physics.hertz import LARGEST_PRESSURE
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.point.film_formulas import point_groups
-from ehdmaps.physics.solution import Status
+from ehdmaps.physics.solution import UNKNOWN, Estimate, Status
 from ehdmaps.physics.spectrum import checked_frequencies
 from ehdmaps.point.problem import PointProblem
 from ehdmaps.point.two_grids import MOST_ERROR, SHARES, PointGroups, Resolution, responses, solve_groups
@@ -86,7 +86,7 @@ class PointField:
 
 @dataclass(frozen=True, eq=False)
 class PointSolution:
-    """One point contact. Numbers are NaN where the status is not usable.
+    """One point contact. Numbers with their errors, which are NaN where the status is not usable.
 
     Attributes
     ----------
@@ -118,9 +118,6 @@ class PointSolution:
         h at the centre, smallest h [m].
     max_pressure : float
         [Pa].
-    approach_error, film_offset_error, stiffness_error, damping_error, film_compliance_error, loss_compliance_error, \
-central_film_error, minimum_film_error, max_pressure_error : float
-        Estimated numerical errors, relative to the value beside them.
     steps : int
         Newton steps, all grids and starts together.
     solve_seconds : float
@@ -143,24 +140,15 @@ central_film_error, minimum_film_error, max_pressure_error : float
     ellipse: Ellipse
     load_number: float = math.nan
     oil_number: float = math.nan
-    approach: float = math.nan
-    film_offset: float = math.nan
-    stiffness: float = math.nan
-    damping: float = math.nan
-    film_compliance: float = math.nan
-    loss_compliance: float = math.nan
-    central_film: float = math.nan
-    minimum_film: float = math.nan
-    max_pressure: float = math.nan
-    approach_error: float = math.nan
-    film_offset_error: float = math.nan
-    stiffness_error: float = math.nan
-    damping_error: float = math.nan
-    film_compliance_error: float = math.nan
-    loss_compliance_error: float = math.nan
-    central_film_error: float = math.nan
-    minimum_film_error: float = math.nan
-    max_pressure_error: float = math.nan
+    approach: Estimate = UNKNOWN
+    film_offset: Estimate = UNKNOWN
+    stiffness: Estimate = UNKNOWN
+    damping: Estimate = UNKNOWN
+    film_compliance: Estimate = UNKNOWN
+    loss_compliance: Estimate = UNKNOWN
+    central_film: Estimate = UNKNOWN
+    minimum_film: Estimate = UNKNOWN
+    max_pressure: Estimate = UNKNOWN
     steps: int = 0
     solve_seconds: float = 0.0
     viscosity_extrapolated: bool = False
@@ -212,7 +200,7 @@ def solve(
     >>> from ehdmaps.physics.lubricant import Lubricant
     >>> ball = Ellipse(10e-3, 10e-3, 230.769e9)
     >>> found = solve(ball, Lubricant.named("FVA3"), 20.0, 1.0, 313.15)
-    >>> found.status.word, round(1e6 * found.central_film, 2), found.central_film_error < 0.03
+    >>> found.status.word, round(1e6 * found.central_film, 2), found.central_film.error < 0.03
     ('converged', 0.45, True)
     """
     problems = [
@@ -269,33 +257,23 @@ def _beyond_reach(ellipse: Ellipse, load: float, M: float, L: float) -> str:
 def _dry(where: tuple[float, float, float, Ellipse], frequencies: FloatArray | None) -> PointSolution:
     """The limit u = 0: no film, no loss, the contact of Hertz."""
     load, _, _, ellipse = where
-    stiffness = float(ellipse.stiffness(load))
-    response = None
+    stiffness, none, response = float(ellipse.stiffness(load)), Estimate(0.0, 0.0), None
     if frequencies is not None:
-        none = np.zeros(frequencies.size)
-        response = PointResponse(frequencies, np.full(frequencies.size, stiffness + 0j), none, none)
+        exact = np.zeros(frequencies.size)
+        response = PointResponse(frequencies, np.full(frequencies.size, stiffness + 0j), exact, exact)
     return PointSolution(
         Status.ASYMPTOTE,
         "no entrainment: dry contact",
         *where,
-        approach=float(ellipse.approach(load)),
-        film_offset=0.0,
-        stiffness=stiffness,
-        damping=0.0,
-        film_compliance=0.0,
-        loss_compliance=0.0,
-        central_film=0.0,
-        minimum_film=0.0,
-        max_pressure=float(ellipse.max_pressure(load)),
-        approach_error=0.0,
-        film_offset_error=0.0,
-        stiffness_error=0.0,
-        damping_error=0.0,
-        film_compliance_error=0.0,
-        loss_compliance_error=0.0,
-        central_film_error=0.0,
-        minimum_film_error=0.0,
-        max_pressure_error=0.0,
+        approach=Estimate(float(ellipse.approach(load)), 0.0),
+        film_offset=none,
+        stiffness=Estimate(stiffness, 0.0),
+        damping=none,
+        film_compliance=none,
+        loss_compliance=none,
+        central_film=none,
+        minimum_film=none,
+        max_pressure=Estimate(float(ellipse.max_pressure(load)), 0.0),
         response=response,
     )
 
@@ -353,24 +331,15 @@ def _in_si(
         "; ".join(notes),
         *where,
         *moes,
-        approach=approach,
-        film_offset=found.film_offset * film,
-        stiffness=found.stiffness * spring,
-        damping=found.damping * spring * half / speed,
-        film_compliance=found.film_compliance / spring,
-        loss_compliance=found.loss / spring * half / speed,
-        central_film=found.central_film * film,
-        minimum_film=found.minimum_film * film,
-        max_pressure=found.max_pressure * peak,
-        approach_error=errors.film_offset * found.film_offset * film / max(abs(approach), 1e-300),
-        film_offset_error=errors.film_offset,
-        stiffness_error=errors.stiffness,
-        damping_error=errors.damping,
-        film_compliance_error=errors.film_compliance,
-        loss_compliance_error=errors.loss,
-        central_film_error=errors.central_film,
-        minimum_film_error=errors.minimum_film,
-        max_pressure_error=errors.max_pressure,
+        approach=Estimate(approach, errors.film_offset * found.film_offset * film / max(abs(approach), 1e-300)),
+        film_offset=Estimate(found.film_offset * film, errors.film_offset),
+        stiffness=Estimate(found.stiffness * spring, errors.stiffness),
+        damping=Estimate(found.damping * spring * half / speed, errors.damping),
+        film_compliance=Estimate(found.film_compliance / spring, errors.film_compliance),
+        loss_compliance=Estimate(found.loss / spring * half / speed, errors.loss),
+        central_film=Estimate(found.central_film * film, errors.central_film),
+        minimum_film=Estimate(found.minimum_film * film, errors.minimum_film),
+        max_pressure=Estimate(found.max_pressure * peak, errors.max_pressure),
         steps=groups.steps,
         solve_seconds=seconds,
         viscosity_extrapolated=found.max_pressure * peak * (1.0 + errors.max_pressure) > state.fitted_pressure,

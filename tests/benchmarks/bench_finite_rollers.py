@@ -122,8 +122,8 @@ def line(label: str, found: RollerSolution, others: list[Numbers | None]) -> str
         found.central_film, found.minimum_film, found.film_offset, found.dry_stiffness, found.stiffness, found.damping
     )
     end = f"{100.0 * (found.minimum_film / found.middle_film - 1.0):+6.1f} {found.minimum_place / (0.5 * LENGTH):5.2f}"
-    text = f"{label}{1e6 * own.central_film:7.4f} {end} {100.0 * found.minimum_film_error:5.1f} "
-    text += f"{100.0 * found.damping_error:5.1f} "
+    text = f"{label}{1e6 * own.central_film:7.4f} {end} {100.0 * found.minimum_film.error:5.1f} "
+    text += f"{100.0 * found.damping.error:5.1f} "
     for other in others:
         shares = [math.nan] * 6 if other is None else [100.0 * (b / a - 1.0) for a, b in zip(own, other, strict=True)]
         text += " |" + "".join(f"{share:+7.1f}" for share in shares)
@@ -188,7 +188,7 @@ def main(asked: list[str]) -> None:
         widths = [each.roller.length / 2.0 / _half(each) for each in usable]
         print(f"length over width {min(widths):.0f} to {max(widths):.0f}, median {np.median(widths):.0f}")
         for name in ("central_film", "minimum_film", "damping"):
-            errors = [100.0 * getattr(each, f"{name}_error") for each in usable]
+            errors = [100.0 * getattr(each, name).error for each in usable]
             print(
                 f"stated error of {name}: median {np.median(errors):.1f}, nine of ten {np.percentile(errors, 90):.1f} %"
             )

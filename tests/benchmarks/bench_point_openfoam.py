@@ -82,7 +82,7 @@ def main() -> None:
             cells, row = "", []
             for key in NAMES:
                 difference = getattr(cfd, key) / getattr(other, key) - 1.0
-                stated = getattr(cfd, f"{key}_error") + getattr(other, f"{key}_error")
+                stated = getattr(cfd, key).error + getattr(other, key).error
                 cells += f"{100 * difference:+7.2f} ({100 * stated:4.2g}){'!' if abs(difference) > stated else ' '}"
                 row.append(abs(difference))
             apart.append(row)
@@ -97,7 +97,7 @@ def ladder(place: Place) -> None:
     found: list[tuple[int, float, float]] = []
     for columns, lines in ((48, 18), (72, 27), (108, 42)):
         film = OpenFoamPointSolver(columns=columns, lines=lines).solve(place[0], OIL, *place[1:])
-        found.append((columns, film.central_film, film.central_film_error))
+        found.append((columns, film.central_film, film.central_film.error))
     others = [solve(place[0], OIL, *place[1:], resolution=grids) for grids in (Resolution(), Resolution().finer.finer)]
     told = ", ".join(f"{n} columns {1e9 * film:.3f} +- {1e9 * film * error:.3f}" for n, film, error in found)
     beside = " and ".join(f"{1e9 * other.central_film:.3f}" for other in others)

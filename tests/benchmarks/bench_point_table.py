@@ -68,7 +68,7 @@ def of_a_bearing(count: int) -> tuple[FloatArray, FloatArray]:
         thin = float(films.film_offset) < 0.07 * float(contact.semi_axes(load)[0]) ** 2 / contact.rolling_radius
         found = solve(contact, oil, *point, resolution=THIN_RESOLUTION if thin else RESOLUTION.finer)
         if films.usable.all() and found.status.usable:
-            unresolved = [getattr(found, f"{name}_error") > UNRESOLVED for name in NAMES]
+            unresolved = [getattr(found, name).error > UNRESOLVED for name in NAMES]
             differences = [abs(math.log(float(getattr(films, name)) / getattr(found, name))) for name in NAMES]
             wrong.append(np.where(unresolved, math.nan, differences))
             stated.append([float(films.errors[name]) for name in NAMES])

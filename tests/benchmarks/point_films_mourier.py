@@ -49,7 +49,7 @@ def main(folder: str) -> None:
     half = float(BALL.semi_axes(LOAD)[0])
     print(f"M {found.load_number:.4g}, L {found.oil_number:.4g}, a {1e6 * half:.4g} um, p_H "
           f"{1e-6 * float(BALL.max_pressure(LOAD)):.4g} MPa: central film {1e9 * found.central_film:.4g} nm "
-          f"+-{100 * found.central_film_error:.1f} %")  # fmt: skip
+          f"+-{100 * found.central_film.error:.1f} %")  # fmt: skip
     print(f"{'':20s}{'theirs':>12s}{'difference':>12s}{'over the middle of the contact, |x| < 0.85 a':>48s}")
     for label, name, quantity, unit in FILES:
         x, theirs = np.loadtxt(Path(folder) / f"mourier_ssr0_{name}.csv", delimiter=",", skiprows=1).T

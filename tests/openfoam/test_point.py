@@ -51,7 +51,7 @@ def test_the_other_solver_finds_the_same(kept: tuple[PointFilm, Path]) -> None:
     other = solve(BALL, OIL, *PLACE)
     assert (film.load_number, film.oil_number) == (other.load_number, other.oil_number)
     for name in ("central_film", "minimum_film", "max_pressure", "film_offset", "approach", "stiffness", "damping"):
-        bar = getattr(film, f"{name}_error") + getattr(other, f"{name}_error")
+        bar = getattr(film, name).error + getattr(other, name).error
         assert abs(getattr(film, name) / getattr(other, name) - 1.0) < bar < 0.08, name
     for name in ("central_film", "film_offset", "stiffness"):
         assert getattr(film, name) == pytest.approx(getattr(other, name), rel=5e-3), name
@@ -108,8 +108,8 @@ def test_stated_errors_hold_on_a_finer_mesh(kept: tuple[PointFilm, Path]) -> Non
     fine = solver(columns=96, lines=40, rows=2).solve(BALL, OIL, *PLACE)
     for name in ("central_film", "film_offset", "stiffness", "minimum_film"):
         changed = abs(getattr(film, name) / getattr(fine, name) - 1.0)
-        assert changed < 1.5 * getattr(film, f"{name}_error") < 0.02, name
-        assert getattr(fine, f"{name}_error") < 0.7 * getattr(film, f"{name}_error"), name
+        assert changed < 1.5 * getattr(film, name).error < 0.02, name
+        assert getattr(fine, name).error < 0.7 * getattr(film, name).error, name
 
 
 @pytest.fixture(scope="module")

@@ -114,7 +114,7 @@ def test_read_films_are_those_of_solved_points(read_films) -> None:
         nearest = side.errors[np.argmin(np.abs(np.log(side.loads / 130.0)))]
         for name, value, error in zip(names, values[:, 0], nearest, strict=True):
             exact = getattr(found, name)
-            assert abs(value / exact - 1.0) < error + getattr(found, f"{name}_error"), name
+            assert abs(value / exact - 1.0) < error + getattr(found, name).error, name
         assert side.read_loads == side.loads.size and nearest[0] < 0.05
 
 

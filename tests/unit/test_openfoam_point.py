@@ -77,13 +77,13 @@ def test_a_point_with_its_errors(fake, tmp_path):
     film = solver().solve(BALL, OIL, *PLACE)
     assert (film.status, film.steps, film.mesh) == (Status.CONVERGED, 9, MESH)
     # meshes of 2/3 of the cells, second order: 0.8 of the 1 % that they differ by
-    assert film.central_film_error == pytest.approx(0.008)
-    assert film.approach_error == pytest.approx(0.008 * 1e-7 / film.approach)
+    assert film.central_film.error == pytest.approx(0.008)
+    assert film.approach.error == pytest.approx(0.008 * 1e-7 / film.approach)
     # stiffness and loss are not to be as good as one difference says
-    assert film.stiffness_error == pytest.approx(0.012)
-    assert film.damping_error == pytest.approx(0.016 + 0.024)
-    assert film.minimum_film_error == pytest.approx(0.008)  # the film is flat: nothing smaller between its columns
-    assert 0.008 < film.max_pressure_error < 0.05
+    assert film.stiffness.error == pytest.approx(0.012)
+    assert film.damping.error == pytest.approx(0.016 + 0.024)
+    assert film.minimum_film.error == pytest.approx(0.008)  # the film is flat: nothing smaller between its columns
+    assert 0.008 < film.max_pressure.error < 0.05
     assert film.approach == pytest.approx(BALL.approach(20.0) - 1e-7)
     assert film.stiffness == 1e8
     assert film.damping == pytest.approx(1e3)

@@ -53,7 +53,7 @@ def test_numbers_are_those_of_solved_points(table, load, speed, oil):
     assert films.load_number == pytest.approx(found.load_number, rel=1e-12)
     assert films.oil_number == pytest.approx(found.oil_number, rel=1e-12)
     for name in NUMBERS:
-        value, stated = getattr(found, name), float(films.errors[name]) + getattr(found, f"{name}_error")
+        value, stated = getattr(found, name), float(films.errors[name]) + getattr(found, name).error
         assert abs(float(getattr(films, name)) - value) <= stated * abs(value), name
     read = read_response(films, found.response.frequencies)
     for name in ("stiffness", "damping"):

@@ -331,7 +331,7 @@ def test_numbers_of_a_contact_belong_together():
 
 
 def nothing_is_told(found):
-    return all(math.isnan(getattr(found, name)) and math.isnan(getattr(found, f"{name}_error")) for name in NUMBERS)
+    return all(math.isnan(getattr(found, name)) and math.isnan(getattr(found, name).error) for name in NUMBERS)
 
 
 @pytest.mark.parametrize(
@@ -384,4 +384,4 @@ def test_every_answer_has_its_error_or_its_reason(M, kappa):
     assert 0.0 < found.minimum_film <= found.central_film * (1.0 + 1e-9)
     assert found.stiffness > 0.0 and found.max_pressure > 0.0
     for name in NUMBERS:
-        assert 0.0 <= getattr(found, f"{name}_error") < math.inf
+        assert 0.0 <= getattr(found, name).error < math.inf

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,7 +24,7 @@ from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.point.film_formulas import POINT_FILMS
 from ehdmaps.physics.solids import STEEL
-from ehdmaps.physics.solution import Status
+from ehdmaps.physics.solution import Estimate, Status
 from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, MOST_FREQUENCIES
 from ehdmaps.point.solver import PointResponse, PointSolution, solve
 from ehdmaps.program import tell
@@ -146,8 +146,7 @@ def read_point(
 
     seconds = stopwatch()
     films = shipped_point_table().films(ellipse, oil, [load], speed, temperature)
-    numbers = {name: float(getattr(films, name)[0]) for name in KNOWN}
-    numbers |= {f"{name}_error": float(films.errors[name][0]) for name in KNOWN}
+    numbers = {name: Estimate(float(getattr(films, name)[0]), float(films.errors[name][0])) for name in KNOWN}
     response = None
     if frequencies is not None and films.usable[0]:
         found = read_response(films, frequencies)
@@ -293,7 +292,7 @@ def _record(name: str, solution: PointSolution) -> dict[str, Any]:
         "L": solution.oil_number,
         "hertz_semi_axes": [a, b],
         "hertz_pressure": solution.ellipse.max_pressure(solution.load),
-        **{key: getattr(solution, key) for _, attribute, _ in NUMBERS for key in (attribute, f"{attribute}_error")},
+        **with_errors(solution, [attribute for _, attribute, _ in NUMBERS]),
         "steps": solution.steps,
         "solve_seconds": solution.solve_seconds,
         "viscosity_extrapolated": solution.viscosity_extrapolated,
@@ -329,7 +328,7 @@ def _table(request: _Request, solutions: dict[str, PointSolution]) -> str:
         ),
     ]
     for label, name, display in NUMBERS:
-        shown = [shown_with_error(getattr(each, name), getattr(each, f"{name}_error"), display) for each in found]
+        shown = [shown_with_error(getattr(each, name), getattr(each, name).error, display) for each in found]
         rows.append((label, display.unit, shown))
     rows.append(
         (
@@ -364,6 +363,20 @@ def _over_frequency(name: str, solution: PointSolution) -> list[str]:
             f"{frequency:21.5g}{shown_with_error(k, k_error, SPRING):>24s}{shown_with_error(c, c_error, DAMPER):>24s}"
         )
     return lines
+
+
+def with_errors(solution: Any, names: Iterable[str]) -> dict[str, float]:
+    """Numbers of a solution and their errors, by name.
+
+    Parameters
+    ----------
+    solution : PointSolution or RollerSolution
+        The solution.
+    names : iterable of str
+        Names of its estimates.
+    """
+    found = {name: getattr(solution, name) for name in names}
+    return {key: value for name, one in found.items() for key, value in ((name, one), (f"{name}_error", one.error))}
 
 
 def shown_with_error(value: float, error: float, display: Display) -> str:

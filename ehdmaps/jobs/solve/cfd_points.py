@@ -18,6 +18,7 @@ from ehdmaps.openfoam.point_case import PointColumns
 from ehdmaps.outputs import FIELDS, Output, output_problems
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ellipse import Ellipse
+from ehdmaps.physics.solution import Estimate
 from ehdmaps.point.solver import PointField, PointSolution
 
 NUMBERS = (
@@ -122,7 +123,7 @@ def fields_path(path: Path, contact: str) -> Path:
 
 def _solution(found: PointFilm, ellipse: Ellipse, load: float, speed: float, temperature: float) -> PointSolution:
     """The same numbers in the words of the other solver."""
-    numbers: Mapping[str, float] = {key: getattr(found, key) for name in NUMBERS for key in (name, f"{name}_error")}
+    numbers: Mapping[str, Estimate] = {name: getattr(found, name) for name in NUMBERS}
     return PointSolution(
         found.status,
         found.reason,

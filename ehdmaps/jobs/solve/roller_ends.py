@@ -17,7 +17,7 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.problem import SPEED_AXIS
 from ehdmaps.jobs.profiles import RollerProfile, profile_from_text
 from ehdmaps.jobs.reader import read_job
-from ehdmaps.jobs.solve.ball_points import FORCE, shown_with_error
+from ehdmaps.jobs.solve.ball_points import FORCE, shown_with_error, with_errors
 from ehdmaps.jobs.solve.options import option_reader
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import OIL_TEMPERATURES
@@ -152,11 +152,11 @@ def _json(solutions: dict[str, RollerSolution]) -> str:
             "temperature": found.temperature,
             "M": found.load_number,
             "L": found.oil_number,
-            **{key: getattr(found, key) for _, attribute, _ in NUMBERS for key in (attribute, f"{attribute}_error")},
+            **with_errors(found, [attribute for _, attribute, _ in NUMBERS]),
             "minimum_place": found.minimum_place,
             "dry_stiffness": found.dry_stiffness,
             "film_compliance": found.film_compliance,
-            "film_compliance_error": found.film_compliance_error,
+            "film_compliance_error": found.film_compliance.error,
             "steps": found.steps,
             "solve_seconds": found.solve_seconds,
             "status": found.status.word,
@@ -172,7 +172,7 @@ def _table(request: _Request, solutions: dict[str, RollerSolution]) -> str:
     found, bearing = list(solutions.values()), request.bearing
     rows: list[tuple[str, str, list[str]]] = [("status", "", [each.status.word for each in found])]
     for label, name, display in NUMBERS:
-        shown = [shown_with_error(getattr(each, name), getattr(each, f"{name}_error"), display) for each in found]
+        shown = [shown_with_error(getattr(each, name), getattr(each, name).error, display) for each in found]
         rows.append((label, display.unit, shown))
         if name == "minimum_film":
             places = [shown_with_error(each.minimum_place, math.nan, LENGTH) for each in found]

@@ -336,7 +336,7 @@ def _solved(contact: Ellipse, point: _Point, loads: FloatArray) -> Iterator[_Fil
         good = one.status.usable and one.damping > 0.0 and one.film_offset > 0.0
         values = tuple(getattr(one, name) for name in _NAMES) if good else ()
         heavy = heavy or good
-        yield _Film(load, values, tuple(getattr(one, f"{name}_error") for name in _NAMES), one.reason)
+        yield _Film(load, values, tuple(getattr(one, name).error for name in _NAMES), one.reason)
         missing = 0 if good else missing + 1
         if heavy and missing == MISSING:
             break
