@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import Any
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
@@ -67,7 +66,7 @@ def geometry_band(job: Job, point: OperatingPoint, solver: ContactSolver) -> Ban
         lambda sign: replace(bearing, roller_length=bearing.roller_length * (1.0 + sign * errors.roller_length)),
         lambda sign: replace(bearing, rollers=bearing.rollers + round(sign) * errors.rollers),
     )
-    oil = _of_temperature(job.lubricant, point.temperature, 1.0)
+    oil = job.lubricant
     base = _answer(job, bearing, oil, point, solver)
 
     def changed(change: Callable[[float], BearingGeometry]) -> Callable[[float], Answer]:
@@ -93,7 +92,7 @@ def pressure_viscosity_band(job: Job, point: OperatingPoint, solver: ContactSolv
         return None
 
     def changed(sign: float) -> Answer:
-        oil = _of_temperature(job.lubricant, point.temperature, 1.0 + sign * error)
+        oil = job.lubricant.with_alpha(1.0 + sign * error, point.temperature) or job.lubricant
         return _answer(job, bearing, oil, point, solver)
 
     return _added([_largest(changed(0.0), changed)])
@@ -121,15 +120,6 @@ def band_lines(job: Job) -> Iterator[str]:
     ):
         if band is not None:
             yield f"  the estimated {what} may change, either way: {band.words} {place}"
-
-
-def _of_temperature(oil: Lubricant, temperature: float, factor: float) -> Lubricant:
-    """The oil with a constant alpha, a factor times that of one temperature; itself where alpha is no estimate."""
-    if oil.correlation is None:
-        return oil
-    alpha = factor * oil.at(temperature).pressure_viscosity.pressure_viscosity
-    coefficients: dict[str, Any] = {"pressure_viscosity_40": alpha, "pressure_viscosity_100": alpha}
-    return replace(oil, correlation=None, pressure_viscosity=replace(oil.pressure_viscosity, **coefficients))
 
 
 def _answer(job: Job, bearing: BearingGeometry, oil: Lubricant, point: OperatingPoint, solver: ContactSolver) -> Answer:

@@ -528,6 +528,36 @@ class Lubricant:
         coefficients: dict[str, Any] = {"pressure_viscosity_40": alpha, "pressure_viscosity_100": alpha}
         return replace(self.pressure_viscosity, **coefficients)
 
+    def with_alpha(self, factor: float, temperature: float) -> Lubricant | None:
+        """The oil with its alpha times a factor; None where its law takes none.
+
+        Parameters
+        ----------
+        factor : float
+            Factor of alpha at all temperatures.
+        temperature : float
+            Temperature at which value and slope of a correlation are kept [K]; further away its curve is another.
+
+        Examples
+        --------
+        >>> oil = Lubricant.named("ISO VG 68")
+        >>> at = [each.at(333.15).pressure_viscosity.pressure_viscosity for each in (oil, oil.with_alpha(1.25, 333.15))]
+        >>> round(at[1] / at[0], 9)
+        1.25
+        """
+        law: Any = self.pressure_viscosity
+        cold, hot = (getattr(law, f"pressure_viscosity_{celsius}", None) for celsius in (40, 100))
+        if self.correlation is not None:
+            before, here, after = (
+                float(self.at(temperature + step).pressure_viscosity.pressure_viscosity) for step in (-1.0, 0.0, 1.0)
+            )
+            slope = 0.5 * math.log(after / before)
+            cold, hot = (here * math.exp(slope * (ZERO_CELSIUS + end - temperature)) for end in (40.0, 100.0))
+        if cold is None or hot is None:
+            return None
+        coefficients: dict[str, Any] = {"pressure_viscosity_40": factor * cold, "pressure_viscosity_100": factor * hot}
+        return replace(self, correlation=None, pressure_viscosity=replace(law, **coefficients))
+
     def record(self) -> dict[str, float | str | bool]:
         """Everything that defines the oil, flat, for provenance; SI units; values not given are left out.
 

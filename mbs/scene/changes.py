@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +14,7 @@ from mbs.model.drive import DrivenSpeed
 from mbs.model.profiles import Advanced, Constant, Course, SpeedProfile
 from mbs.scene.fields import HERTZ
 from mbs.scene.scene import Scene
-from mbs.scene.specs import HIGHEST_DAMPING_RATIO, BearingSpec, BodySpec, FlexibleSpec, ShaftSpec
+from mbs.scene.specs import HIGHEST_DAMPING_RATIO, BodySpec, FlexibleSpec, ShaftSpec
 from mbs.settings import RunUp
 
 
@@ -65,14 +67,26 @@ def with_clearance_of(scene: Scene, bearing: str, clearance: float) -> Scene:
     InputError
         If no such bearing can have it.
     """
+    return with_bearing(
+        scene, bearing, lambda entry: dataclasses.replace(entry, geometry=entry.geometry.with_clearance(clearance))
+    )
 
-    def changed(entry: BearingSpec) -> BearingSpec:
-        if entry.name != bearing:
-            return entry
-        return dataclasses.replace(entry, geometry=entry.geometry.with_clearance(clearance))
 
-    scene = scene.with_bearings(map(changed, scene.bearings))
-    return scene.with_located(lambda entry: entry.with_clearance(clearance) if entry.name == bearing else entry)
+def with_bearing(scene: Scene, bearing: str, change: Callable[[Any], Any]) -> Scene:
+    """The scene with one of its bearings changed.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    bearing : str
+        Name of the bearing.
+    change : callable
+        Makes another `BearingSpec` or `LocatingSpec` of it.
+    """
+    there = {entry.name for entry in scene.of_all_kinds} & {bearing}
+    changed = [change(entry) if getattr(entry, "name", "") in there else entry for entry in scene.elements]
+    return dataclasses.replace(scene, elements=changed)
 
 
 def with_speed(scene: Scene, speed: float) -> Scene:

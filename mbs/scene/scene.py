@@ -180,6 +180,11 @@ class Scene:
         return {entry.geometry.clearance for entry in self.located} - {None}
 
     @property
+    def of_all_kinds(self) -> tuple[BearingSpec | LocatingSpec, ...]:
+        """Bearings of rollers and balls of all kinds: those without axial load, then the others."""
+        return (*self.bearings, *self.located)
+
+    @property
     def has_bearings(self) -> bool:
         """Tell whether it has a bearing of any kind."""
         return bool(self.bearings or self.located)
@@ -188,8 +193,7 @@ class Scene:
     def clearance_ranges(self) -> dict[str, tuple[str, ClearanceRange]]:
         """Ranges of clearances that are not stated, or beside a class: designation and range, by the bearing."""
         found = {}
-        entries: tuple[BearingSpec | LocatingSpec, ...] = (*self.bearings, *self.located)
-        for entry in entries:
+        for entry in self.of_all_kinds:
             if (reach := clearance_range(entry.geometry)) is not None:
                 found[entry.name] = entry.geometry.name, reach
         return found

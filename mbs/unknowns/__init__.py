@@ -3,6 +3,7 @@
 =========  =================================================================================================
 unknown    one thing that is not known: half-width, reason, and the changed scenes that a band looks at
 statement  how well a number is known, as files and commands say it; the nearest statement wins
+geometry   what an estimated inner geometry may be off, and profiles that are not stated
 held_open  all that a scene leaves open, with the sources of its spreads
 =========  =================================================================================================
 

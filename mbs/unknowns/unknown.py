@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from ehdmaps.errors import InputError
 
 if TYPE_CHECKING:
     from mbs.scene.scene import Scene
@@ -44,3 +47,20 @@ class Unknown:
     def text(self) -> str:
         """The unknown in a line."""
         return f"{self.name} {self.held} ({self.why})"
+
+
+def looks_of(makers: Sequence[Callable[[], Scene]]) -> tuple[tuple[Scene, ...], bool]:
+    """Scenes at the ends of a spread, and whether a single one is left, which is reflected.
+
+    Parameters
+    ----------
+    makers : sequence of callable
+        Each makes a scene; one that no machine can be raises an `InputError` and is left out.
+    """
+    looks = []
+    for make in makers:
+        try:
+            looks.append(make())
+        except InputError:
+            continue
+    return tuple(looks), len(looks) == 1
