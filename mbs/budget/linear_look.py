@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 
 import numpy as np
 import scipy
@@ -16,13 +17,14 @@ import scipy
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import AnalysisError
 from mbs.analyses.operating import operating
-from mbs.linearised.averaged import steady_system
+from mbs.linearised.averaged import mean_equilibrium
 from mbs.linearised.linear import frequency_response, with_peaks
 from mbs.linearised.modes import Modes, modes
 from mbs.linearised.pairs import partners
 from mbs.model.elements import Operation
-from mbs.model.equilibrium import Equilibrium, equilibrium
+from mbs.model.equilibrium import Equilibrium
 from mbs.scene.assembly import Model
+from mbs.settings import CAGE_ANGLES
 
 MOST_DAMPED = 0.5
 """Damping ratio up to which a mode is looked at: above, a response has hardly a peak by it."""
@@ -83,6 +85,18 @@ class LinearDifferences:
     damping: FloatArray
     height: FloatArray
     load: FloatArray
+
+    @classmethod
+    def worst(cls, several: Sequence[LinearDifferences]) -> LinearDifferences:
+        """Of each difference of several systems the largest one; NaN where one has nothing to compare.
+
+        Parameters
+        ----------
+        several : sequence of LinearDifferences
+            At least one, beside the same reference.
+        """
+        parts = (np.array([getattr(one, entry.name) for one in several]) for entry in fields(cls))
+        return cls(*(_largest(part) for part in parts))
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,7 +168,7 @@ class LinearReference:
         return partners(own.balance.system, shapes, other.balance.system, other.modes.shapes)
 
 
-def linear_look(model: Model, angle: float = 0.0) -> LinearLook:
+def linear_look(model: Model, angle: float = 0.0, cage_angles: int = CAGE_ANGLES) -> LinearLook:
     """Look at the linear system of a model at its operating speed.
 
     Parameters
@@ -163,6 +177,8 @@ def linear_look(model: Model, angle: float = 0.0) -> LinearLook:
         Scene with its law; without inputs, sensors or frequencies it has no responses.
     angle : float
         Angle that the system has turned, with its cages [rad].
+    cage_angles : int
+        Cage angles over which stiffness and damping of the bearings are averaged, the first of them at `angle`.
 
     Raises
     ------
@@ -172,7 +188,7 @@ def linear_look(model: Model, angle: float = 0.0) -> LinearLook:
     begin = time.process_time()
     scene = model.scene
     model = operating(model, scene.speed)
-    balance = equilibrium(steady_system(model.system), Operation(scene.speed, angle))
+    balance = mean_equilibrium(model.system, Operation(scene.speed, angle), cage_angles)
     found = modes(balance)
     asked = np.array(scene.frequencies) if scene.inputs and scene.sensors else np.zeros(0)
     frequencies = with_peaks(asked, found.eigenvalues)
@@ -185,6 +201,14 @@ def linear_look(model: Model, angle: float = 0.0) -> LinearLook:
     levels = 20.0 * np.log10(np.maximum(responses, 1e-300)).reshape(frequencies.size, math.prod(responses.shape[1:]))
     names = tuple(entry.name for entry, there in zip(model.on_rings, known, strict=True) if there)
     return LinearLook(balance, found, frequencies, np.asarray(levels), found_loads[known], names, seconds)
+
+
+def _largest(values: FloatArray) -> FloatArray:
+    """Of each column of values the one of largest size, with its sign; NaN where one is."""
+    if not values.size:
+        return values[0]
+    at = np.argmax(np.where(np.isnan(values), np.inf, np.abs(values)), axis=0)
+    return np.asarray(np.take_along_axis(values, at[None], axis=0)[0])
 
 
 def _highest(look: LinearLook, column: int, frequency: float) -> float:

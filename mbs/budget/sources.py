@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
-import math
+import functools
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -17,13 +17,18 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.surface import Surface
 from ehdmaps.trade.record import Choice, Entry, ErrorSummary, Group, Judged, Source, Trade
 from ehdmaps.units import RPM
-from mbs.analyses.case import common_clearance
+from mbs.analyses.operating import settled
 from mbs.budget.linear_look import LinearDifferences, LinearLook, LinearReference, linear_look
 from mbs.scene.assembly import Model
+from mbs.scene.changes import with_clearance_of
 from mbs.scene.choices import CHOICES, LawChoice, Subject, named_law
 from mbs.scene.contact_laws import law_label
-from mbs.scene.fields import HERTZ, MICROMETRE
+from mbs.scene.fields import HERTZ
 from mbs.scene.map_set import TABLE_LAW
+from mbs.scene.scene import Scene
+from mbs.settings import CAGE_ANGLES
+from mbs.unknowns.held_open import clearance_of, held_open
+from mbs.unknowns.unknown import Unknown
 
 FREQUENCY, DAMPING, HEIGHT, LOAD = "frequency", "damping ratio", "response peak", "contact load"
 
@@ -36,12 +41,12 @@ DAMPER = "hertz:1.25e-5 s"
 SUPPLIES = ("flooded", "oil bath", "oil air", "grease")
 
 
-WARMER, LOOSER, ROUGH = 5.0, 10e-6, Surface(2e-7)
-"""By how much what a scene states is changed: temperature [K], clearance [m]; and a surface."""
+ROUGH = Surface(2e-7)
+"""A surface in place of a smooth one."""
 
 
-UNKNOWN = "what a scene states"
-"""Group of the choices of what is stated."""
+UNKNOWN = "what is held open"
+"""Group of what a scene leaves open, or states and may be wrong."""
 
 
 Tried = Entry[Subject]
@@ -58,7 +63,66 @@ def model_choices(base: Subject, model: Model) -> list[Tried]:
     model : Model
         Model of the scene.
     """
-    return [*_laws(base), *_supplies(base), *_unknown(base, model)]
+    return [*_laws(base), *_supplies(base), *_others(base, model)]
+
+
+def open_rows(base: Subject, model: Model, beside: LinearReference) -> list[Choice]:
+    """Rows of the linear analysis for all that a scene leaves open: of each the larger change at both of its ends.
+
+    Parameters
+    ----------
+    base : Subject
+        The scene with films that have their memory.
+    model : Model
+        Model of the scene.
+    beside : LinearReference
+        What it is compared with.
+    """
+    group, rows = Group(UNKNOWN, base), []
+    for unknown in held_open(model.scene):
+        looks = []
+        for scene in unknown.looks:
+            with contextlib.suppress(AnalysisError, InputError):  # what has no equilibrium has no error either
+                looks.append(linear_look(model.again(scene), cage_angles=1 if unknown.frozen_cage else CAGE_ANGLES))
+        if looks:
+            entry = Entry(group, _label(unknown), base)
+            differences = LinearDifferences.worst([beside.beside(look) for look in looks])
+            rows.append(differences_row(entry, sum(look.seconds for look in looks), beside, differences))
+    return rows
+
+
+def open_runs(base: Subject, model: Model) -> list[Tried]:
+    """What a scene leaves open that runs in time are tried with: the upper ends of temperature, and of all clearances.
+
+    Parameters
+    ----------
+    base : Subject
+        The scene with films that have their memory.
+    model : Model
+        Model of the scene.
+    """
+    group, unknowns = Group(UNKNOWN, base), held_open(model.scene)
+    clearances = [one for one in unknowns if one.group == "clearance" and one.looks]
+    found = [(_label(one), one.looks[-1]) for one in unknowns if one.group == "temperature" and one.looks]
+    if clearances:
+        loose = functools.reduce(_looser, (one.looks[-1] for one in clearances))
+        found.append((_label(clearances[0]) if len(clearances) == 1 else "all clearances at their upper ends", loose))
+    return [Entry(group, label, dataclasses.replace(base, scene=scene, clearance=None)) for label, scene in found]
+
+
+def _looser(scene: Scene, other: Scene) -> Scene:
+    """The scene with the clearances of another one of the same bearings, where these are larger."""
+    own = {entry.name: clearance_of(entry) for entry in (*scene.bearings, *scene.located)}
+    for entry in (*other.bearings, *other.located):
+        value, least = clearance_of(entry), own[entry.name]
+        if value is not None and least is not None and value > least:
+            scene = with_clearance_of(scene, entry.name, value)
+    return scene
+
+
+def _label(unknown: Unknown) -> str:
+    """Name of a row, with how far it may be off."""
+    return f"{unknown.name} {unknown.held}"
 
 
 def model_sources(base: Subject, choices: Sequence[Choice]) -> list[Source]:
@@ -71,12 +135,12 @@ def model_sources(base: Subject, choices: Sequence[Choice]) -> list[Source]:
     choices : sequence of Choice
         What was measured.
     """
-    memory = f"{base.law.label}, memory"
+    memory, open_groups = f"{base.law.label}, memory", [f"{kind}: {UNKNOWN}" for kind in ("linear", "run-up")]
     return [
         Source("films, their stiffness and damping", law_label("hertz"), memory),
         Source("film memory", f"{base.law.label}, slow films", memory),
         *(Source(f"oil supply: {text}", text) for text in SUPPLIES[1:]),
-        *(Source(choice.label, choice.label) for choice in choices if choice.group == f"linear: {UNKNOWN}"),
+        *(Source(label, label) for label in dict.fromkeys(one.label for one in choices if one.group in open_groups)),
     ]
 
 
@@ -101,7 +165,7 @@ def error_budget(subject: Subject, highest: float) -> Trade:
     if not law.has_films:
         law = named_law(TABLE_LAW if scene.lubricant is not None else "formula", scene)
     base = dataclasses.replace(subject, law=dataclasses.replace(law, films="memory"))
-    model = base.model()
+    base, model = settled_base(base, highest)
     beside = LinearReference.of(linear_look(model), highest)
     choices = []
     for one in model_choices(base, model):
@@ -110,6 +174,7 @@ def error_budget(subject: Subject, highest: float) -> Trade:
         except (AnalysisError, InputError):
             continue  # what has no equilibrium has no error either
         choices.append(linear_row(one, found, beside))
+    choices += open_rows(base, model, beside)
     counted = f"{beside.chosen.size} modes and {len(beside.peaks)} peaks"
     sample = f"{counted} up to {HERTZ.text(highest)} at {RPM.text(scene.speed)}"
     return Trade(
@@ -128,14 +193,24 @@ def error_budget(subject: Subject, highest: float) -> Trade:
     )
 
 
-def _unknown(base: Subject, model: Model) -> Iterator[Tried]:
-    """Choices of what a scene states or leaves open, each a little off."""
-    clearance, group = common_clearance(model), Group(UNKNOWN, base)
-    stated: list[tuple[str, float | str | Surface, str]] = [
-        ("temperature", base.scene.temperature + WARMER, f"rings {WARMER:g} K warmer than stated")
-    ]
-    if math.isfinite(clearance):
-        stated.append(("clearance", clearance + LOOSER, f"clearance {MICROMETRE.text(LOOSER)} more than stated"))
+def settled_base(base: Subject, highest: float) -> tuple[Subject, Model]:
+    """The subject and its model, with the clearances in force, and cut-offs that modes do not feel.
+
+    Parameters
+    ----------
+    base : Subject
+        The scene with its law.
+    highest : float
+        Frequency up to which modes count [Hz].
+    """
+    model = settled([base.model()], base.scene.speed, highest)[0]
+    return dataclasses.replace(base, scene=model.scene, clearance=None), model
+
+
+def _others(base: Subject, model: Model) -> Iterator[Tried]:
+    """Alternatives of what a scene states, which have no range."""
+    group = Group(UNKNOWN, base)
+    stated: list[tuple[str, str | Surface, str]] = []
     if base.law.maps is not None:
         structure = base.law.maps.maps[0].structural_law
         other = "iso16281" if structure == "half_space" else "half_space"

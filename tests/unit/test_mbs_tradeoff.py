@@ -13,6 +13,7 @@ from ehdmaps.trade.budget import budget
 from mbs import assemble, parse_scene, read_scene
 from mbs.budget import sources
 from mbs.budget.linear_look import LinearReference, linear_look
+from mbs.budget.sources import error_budget
 from mbs.cli import main
 from mbs.laboratory.tradeoff import machines as analysis
 from mbs.laboratory.tradeoff.answer import answer_lines
@@ -20,7 +21,7 @@ from mbs.laboratory.tradeoff.data import trade_json
 from mbs.laboratory.tradeoff.machines import TradeoffSettings, tradeoff
 from mbs.laboratory.tradeoff.text import trade_text
 from mbs.scene import changes
-from mbs.scene.choices import LawChoice
+from mbs.scene.choices import LawChoice, Subject
 from mbs.scene.map_set import MapSet
 from tests.cases.laws import dataset_of
 from tests.unit.test_mbs_tolerance import SWINGING
@@ -61,7 +62,7 @@ class TestTradeoff:
     def test_rows_references_and_defaults(self, monkeypatch):
         monkeypatch.setattr(sources, "SUPPLIES", ("flooded", "oil air"))
         monkeypatch.setattr(analysis, "SLICES", (3, 9))
-        monkeypatch.setattr(analysis, "ANGLES", (1, 2))
+        monkeypatch.setattr(analysis, "ANGLES", (4, 8))
         # Tables of a formula take longer than all the rest.
         every = sources._laws
         monkeypatch.setattr(sources, "_laws", lambda *given: [one for one in every(*given) if "film" not in one.label])
@@ -78,7 +79,7 @@ class TestTradeoff:
             *(
                 f"{kind}: {words}"
                 for kind in ("linear", "run-up")
-                for words in ("law", "oil supply", "what a scene states", "map", "slices")
+                for words in ("law", "oil supply", "what is held open", "map", "slices")
             ),
             "linear: cage angles",
             "run-up: step",
@@ -90,7 +91,7 @@ class TestTradeoff:
         assert rows["linear: law", "dry Hertz"].errors["frequency"].largest > 0.0
         assert rows["linear: slices", "5 slices"].default
         assert rows["linear: slices", "3 slices"].errors["contact load"].largest > 0.0
-        # None twice: three laws, a supply more, four things that a scene states, a map with fewer loads, fewer and more
+        # None twice: three laws, a supply more, four things that are held open, a map with fewer loads, fewer and more
         # slices, all steps with the finest one, and the finest of all, each of two parts.
         steps = sum(group == "run-up: step" for group, _ in rows)
         assert len(made) == 2 * (3 + 1 + 4 + 1 + 2 + steps + 1)
@@ -98,7 +99,7 @@ class TestTradeoff:
         assert json.loads(trade_json(found))
         bars = {bar.name: bar for bar in budget(found)}
         films = "films, their stiffness and damping"
-        assert {films, "5 slices", "rings 5 K warmer than stated", "1 angle of the cages"} <= set(bars)
+        assert {films, "5 slices", "temperature +-5 K", "4 angles of the cages"} <= set(bars)
         # of a run and of a linear analysis in one line
         assert set(bars[films].errors) == {"frequency", "damping ratio", "sum level"}
         assert bars["5 slices"].errors["frequency"] == rows["linear: slices", "5 slices"].errors["frequency"]
@@ -106,14 +107,14 @@ class TestTradeoff:
         assert "a linear analysis: what to use" in answers and "a run-up: what to use" in answers
 
     def test_a_machine_on_balls_has_rows_of_its_laws(self, monkeypatch):
-        monkeypatch.setattr(analysis, "ANGLES", (1, 2))
+        monkeypatch.setattr(analysis, "ANGLES", (4, 8))
         scene = read_scene("electric_drive")
         scene = dataclasses.replace(scene, frequencies=scene.frequencies[::20])
         found = tradeoff(scene, [], settings=TradeoffSettings(scene.campbell, runs=False))
         rows = {(choice.group, choice.label): choice for choice in found.choices}
         # no formula, no supply, no slices: balls have none
         assert {group for group, _ in rows} == {
-            f"linear: {words}" for words in ("law", "what a scene states", "cut-off", "cage angles")
+            f"linear: {words}" for words in ("law", "what is held open", "cut-off", "cage angles")
         }
         assert all(choice.solved == choice.asked for choice in found.choices)
         dry, slow, memory = (
@@ -122,6 +123,21 @@ class TestTradeoff:
         assert dry["damping ratio"].largest > slow["damping ratio"].largest > 0.0
         assert dry["contact load"].points == 2 and dry["contact load"].largest > 0.0
         assert memory["frequency"].largest == 0.0
+
+    def test_clearances_that_differ_are_rows_of_the_budget(self):
+        law = LawChoice("map", "map", MapSet([EHDMap(dataset_of())]), films="memory")
+        scene = changes.with_clearance_of(changes.with_slices(read_scene("nu308_rigid"), 5), "bearing_left", 40e-6)
+        scene = dataclasses.replace(scene, frequencies=())
+        rows = {choice.label: choice for choice in error_budget(Subject(scene, law), 5000.0).choices}
+        own = LinearReference.of(linear_look(Subject(scene, law).model()), 5000.0)
+        for name in ("bearing_left", "bearing_right"):
+            (row,) = [choice for label, choice in rows.items() if label.startswith(f"clearance of {name} ")]
+            value = next(one.geometry.diametral_clearance for one in scene.bearings if one.name == name)
+            ends = [changes.with_clearance_of(scene, name, value + by) for by in (-5e-6, 5e-6)]
+            found = [own.beside(linear_look(Subject(end, law).model())).damping for end in ends]
+            # the larger of both ends, of each mode
+            largest = np.max(np.abs(found))
+            assert row.errors["damping ratio"].largest == pytest.approx(largest, rel=1e-6) and largest > 1e-3
 
     def test_the_command_refuses_before_it_measures(self, capsys):
         assert main(["tradeoff", "nu308_rigid", "--sensor", "S9", "--highest", "nonsense"]) == 2

@@ -38,16 +38,20 @@ from mbs.budget.sources import (
     linear_row,
     model_choices,
     model_sources,
+    open_rows,
+    open_runs,
+    settled_base,
 )
 from mbs.laboratory.tradeoff.ramp_parts import PartRun, Ramp, RampPart, ramp_of, run_part
 from mbs.linearised.averaged import pitch
 from mbs.planning.tolerance import Numerics
 from mbs.scene import changes
+from mbs.scene.assembly import Model
 from mbs.scene.choices import CHOICES, LawChoice, Subject, named_law
 from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.scene.map_set import TABLE_LAW, MapSet
 from mbs.scene.scene import Scene
-from mbs.settings import CampbellSettings
+from mbs.settings import CAGE_ANGLES, CampbellSettings
 from mbs.spectral.levels import Reference
 
 T = TypeVar("T")
@@ -62,8 +66,11 @@ SLICES = (6, 11, 21, 41, 81)
 COARSER, FINER = (4.0, 2.0), (0.5, 0.25)
 """Steps that are tried, as multiples of that of the scene; the last one is the reference."""
 
-ANGLES = (1, 2, 4, 8)
-"""Cage angles within one pitch that are tried; the last ones are the reference."""
+ANGLES = (1, 2, 4, 8, 16)
+"""Numbers of cage angles within one pitch that are tried; the last one is the reference."""
+
+STARTS = 4
+"""Places of the first of them, of which the worst counts."""
 
 NUMBERS = ("slices", "cut-off", "step", "cage angles")
 """Groups of choices."""
@@ -133,14 +140,17 @@ def tradeoff(
     base = Subject(scene, dataclasses.replace(films, films="memory"), clearance)
     runs = settings.runs and scene.run_up is not None
     numerics = Numerics.of(scene) if scene.run_up is not None else None
-    model = base.model()
+    base, model = settled_base(base, settings.campbell.highest)
+    scene = base.scene
     models = [*model_choices(base, model), *_maps(base, maps)]
     linear = [*models, *_numbers(base, ("slices", "cutoff"), settings)]
     ramp = ramp_of(model, settings.campbell, looked_at(scene, settings.campbell)) if runs else None
-    tried = [*models, *_numbers(base, ("step", "slices", "cutoff"), settings)] if ramp else []
+    numbers = ("step", "slices", "cutoff")
+    tried = [*models, *open_runs(base, model), *_numbers(base, numbers, settings)] if ramp else []
     parts = () if ramp is None else tuple(ramp.parts[int(place * len(ramp.parts))] for place in PLACES)
-    measure = _Measured(ramp, parts, progress or silent, 2 * (len(linear) + len(tried)) + ANGLES[-1])
+    measure = _Measured(ramp, parts, progress or silent, 2 * (len(linear) + len(tried)) + STARTS * len(ANGLES))
     choices = [_linear_choice(one, measure, settings) for one in linear]
+    choices += _open_choices(base, model, measure, settings)
     choices += _angle_choices(base, measure, settings)
     if ramp is not None and numerics is not None:
         tried.append(_together(base, numerics))
@@ -281,19 +291,19 @@ class _Measured:
         self.ramp, self.parts = ramp, parts
         self._tell, self._most, self._done = tell, most, 0
         self._warm: set[str] = set()
-        self._known: dict[tuple[str, int, float], Any] = {}
+        self._known: dict[tuple[str, int, float, int], Any] = {}
         self._kept: list[Subject] = []
 
-    def linear(self, subject: Subject, angle: float = 0.0) -> LinearLook | str:
-        """The linear system at an angle of the cages."""
+    def linear(self, subject: Subject, angle: float = 0.0, cage_angles: int = CAGE_ANGLES) -> LinearLook | str:
+        """The linear system with means over some cage angles, the first of them at an angle of the system."""
 
         def look(new: bool) -> LinearLook:
             model = subject.model()
             if new:
-                linear_look(model, angle)
-            return linear_look(model, angle)
+                linear_look(model, angle, cage_angles)
+            return linear_look(model, angle, cage_angles)
 
-        return self._once("linear", subject, angle, look)
+        return self._once("linear", subject, (angle, cage_angles), look)
 
     def runs(self, subject: Subject) -> tuple[PartRun, ...] | str:
         """The runs of all parts."""
@@ -304,15 +314,15 @@ class _Measured:
                 _warm(subject, self.ramp)
             return tuple(run_part(subject, self.ramp, part) for part in self.parts)
 
-        return self._once("run", subject, 0.0, run)
+        return self._once("run", subject, (0.0, 1), run)
 
     def finish(self) -> None:
         """Say that nothing more is measured."""
         self._tell(self._most, self._most)
 
-    def _once(self, kind: str, subject: Subject, angle: float, measure: Callable[[bool], T]) -> T | str:
+    def _once(self, kind: str, subject: Subject, cages: tuple[float, int], measure: Callable[[bool], T]) -> T | str:
         """Measure what was not measured yet; `measure` is told whether its like has not run in this process."""
-        key, like = (kind, id(subject), angle), f"{kind} {subject.law.name} {subject.law.films}"
+        key, like = (kind, id(subject), *cages), f"{kind} {subject.law.name} {subject.law.films}"
         if key not in self._known:
             self._kept.append(subject)
             try:
@@ -351,33 +361,34 @@ def _reference(one: Tried, found: T | str) -> T:
     return found
 
 
+def _open_choices(base: Subject, model: Model, measure: _Measured, settings: TradeoffSettings) -> list[Choice]:
+    """Rows of what the scene leaves open, beside the reference."""
+    found = measure.linear(base)
+    return (
+        [] if isinstance(found, str) else open_rows(base, model, LinearReference.of(found, settings.campbell.highest))
+    )
+
+
 def _angle_choices(base: Subject, measure: _Measured, settings: TradeoffSettings) -> list[Choice]:
-    """Rows of the cage angles: means over some angles beside the mean over the most."""
-    first = measure.linear(base)
-    if isinstance(first, str):
+    """Rows of the cage angles: means over some, from several places on, beside the mean over the most."""
+    finest = measure.linear(base, 0.0, ANGLES[-1])
+    if isinstance(finest, str):
         return []
-    turns = [pitch(entry.element) for entry in first.balance.system.elements]
-    turn = max(turns, default=0.0)
+    turn = max((pitch(entry.element) for entry in finest.balance.system.elements), default=0.0)
     if turn == 0.0:
         return []
-    most = ANGLES[-1]
-    looks = [measure.linear(base, turn * index / most) for index in range(most)]
-    solved = [look for look in looks if not isinstance(look, str)]
-    if len(solved) < most:
-        return []
-    beside = LinearReference.of(first, settings.campbell.highest)
-    found = [beside.beside(look) for look in solved]
-    parts = {kind: np.array([getattr(one, kind) for one in found]) for kind in ("frequency", "damping", "height")}
-    load = 1.0 + np.array([one.load for one in found])
+    beside = LinearReference.of(finest, settings.campbell.highest)
     group, choices = Group("cage angles", base, FINEST["cage angles"]), []
     for count in ANGLES[:-1]:
-        here = slice(None, None, most // count)
-        means = {kind: values[here].mean(axis=0) - values.mean(axis=0) for kind, values in parts.items()}
-        # Of loads a user wants the largest one, wherever the cage stands.
-        largest = load[here].max(axis=0) / load.max(axis=0) - 1.0
-        entry = Entry(group, f"{count} angle{'s' if count > 1 else ''}", base, default=count == 1)
-        differences = LinearDifferences(**means, load=largest)
-        choices.append(differences_row(entry, count * first.seconds, beside, differences))
+        starts = [turn * part / (STARTS * count) for part in range(STARTS)]
+        looks = [look for at in starts if not isinstance(look := measure.linear(base, at, count), str)]
+        if len(looks) < STARTS:
+            continue
+        worst = LinearDifferences.worst([beside.beside(look) for look in looks])
+        # Loads are those of the first place, whatever is averaged.
+        worst = dataclasses.replace(worst, load=np.full_like(worst.load, np.nan))
+        entry = Entry(group, f"{count} angle{'s' if count > 1 else ''}", base, default=count == CAGE_ANGLES)
+        choices.append(differences_row(entry, sum(look.seconds for look in looks) / STARTS, beside, worst))
     return choices
 
 
