@@ -224,8 +224,9 @@ class Machine(Base):
         film, damping = (step, 0.0) if kind == "film" else (0.0, step)
         if name not in self.sliced:
             return wrong(self.model.system, name, film, damping)
-        changes = dict.fromkeys(self.sliced, (LawChange(), LawChange()))
-        changes[name] = (LawChange(damping=damping, film=film),) * 2
+        elements = {connected.element.name: connected.element for connected in self.model.system.elements}
+        wrongs = dict.fromkeys(self.sliced, LawChange()) | {name: LawChange(damping=damping, film=film)}
+        changes = {key: (change,) * len(elements[key].film_laws) for key, change in wrongs.items()}
         return with_changed_laws(self.model, changes, (1.0, 1.0, 1.0)).system
 
     def check_eigenvalues(self, name, kind, change, step, within):
