@@ -6,6 +6,7 @@ import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -32,6 +33,7 @@ from mbs.settings import CAGE_ANGLES, check_cage_angles
 
 if TYPE_CHECKING:
     from mbs.output.files import Figure
+    from mbs.unknowns.of_peaks import PeakBands
 
 
 @dataclass(frozen=True)
@@ -105,6 +107,28 @@ class LsaResult:
     lifting: tuple[DynamicLoad, ...]
     dataset: xr.Dataset
     findings: tuple[Finding, ...] = ()
+
+    @cached_property
+    def bands(self) -> PeakBands:
+        """Bands of what is not known of the peaks of the responses; found when they are asked for."""
+        from mbs.unknowns.of_peaks import peak_bands
+
+        sizes = np.abs(self.responses)
+        return peak_bands(self.model, self.balance, self.modes, self.frequencies, sizes, self.level_error)
+
+    def bounded(self) -> xr.Dataset:
+        """The data set with the peaks of the responses and their bounds."""
+        from mbs.unknowns.bounds import with_bounds
+
+        bands, found = self.bands, self.dataset
+        names = [[entry.name for entry in entries] for entries in (self.model.scene.sensors, self.model.scene.inputs)]
+        for name, column, places in (("peak_sensor", 1, names[0]), ("peak_input", 2, names[1])):
+            of = np.array([places[k] for k in bands.places[:, column]], dtype=np.str_)
+            found = found.assign({name: ("peak", of, {"long_name": f"{name.partition('_')[2]} of the peak"})})
+        for name, unit, own in (("peak_frequency", "Hz", bands.frequency), ("peak_level", "dB", bands.level)):
+            attributes = {"units": unit, "long_name": f"{name.partition('_')[2]} of the peak of a response"}
+            found = with_bounds(found.assign({name: ("peak", own.value, attributes)}), name, own)
+        return found
 
     def plot(self) -> Figure:
         """Figure that `mbs lsa --plot` writes: magnitude and phase of the responses."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from ehdmaps.arrays import FloatArray
 from mbs.analyses.losses import contacts_and_losses
 from mbs.analyses.operating import operating, states_of
 from mbs.analyses.soundness import findings_at_rest, with_findings
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from mbs.output.files import Figure
+    from mbs.scene.scene import Scene
+    from mbs.unknowns.looks import Band
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,11 +66,45 @@ class StaticsResult:
             dataset = with_gears(dataset, model, self.balance)
         return with_findings(described(dataset, **law_attributes(model)), self.findings)
 
+    @cached_property
+    def bands(self) -> dict[str, Band]:
+        """Bands of what is not known, by the names of variables of the data set; found when they are asked for."""
+        from mbs.unknowns.held_open import held_open
+        from mbs.unknowns.of_variables import variable_bands
+
+        def make(scene: Scene, standing: bool) -> dict[str, FloatArray]:
+            return banded_variables(statics(self.model.again(scene), self.balance.operation).dataset)
+
+        return variable_bands(make, banded_variables(self.dataset), held_open(self.model.scene))
+
     def plot(self) -> Figure:
         """Figure that `mbs statics --plot` writes: loads of the rollers and slices of each bearing."""
         from mbs.output.bearing_plot import statics_figure
 
         return statics_figure(self.model, self.balance, self.contacts, warned(self.findings))
+
+
+BANDED = (
+    "bearing_stiffness",
+    "bearing_damping",
+    "bearing_force",
+    "hertz_pressure",
+    "central_film",
+    "minimum_film",
+    "highest_raceway_load",
+)
+"""Variables of statics that have bands of what is not known."""
+
+
+def banded_variables(dataset: xr.Dataset) -> dict[str, FloatArray]:
+    """Values of the variables that have bands, as far as a data set has them.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        That of statics.
+    """
+    return {name: dataset[name].values for name in BANDED if name in dataset}
 
 
 def statics(model: Model, operation: Operation | None = None) -> StaticsResult:

@@ -7,6 +7,7 @@ import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -45,9 +46,11 @@ from mbs.output.sweep_data import critical_dataset, sweep_dataset
 from mbs.scene.assembly import Model, choice_attributes, law_attributes, laws_attributes
 from mbs.scene.scene import Scene
 from mbs.settings import CAGE_ANGLES, SweepRange
+from mbs.unknowns.bounds import SIDES
 
 if TYPE_CHECKING:
     from mbs.output.files import Figure
+    from mbs.unknowns.over_speed import SpeedBands
 
 
 _LEAST_SIZE = 1e-300
@@ -94,6 +97,32 @@ class SweepResult:
     outside: tuple[Mapping[str, int], ...]
     dataset: xr.Dataset
     findings: tuple[tuple[Finding, ...], ...] = ()
+
+    @cached_property
+    def bands(self) -> tuple[SpeedBands, ...]:
+        """Bands of what is not known of the modes of each case; found when they are asked for."""
+        from mbs.unknowns.over_speed import bands_over_speed
+
+        highest = max(self.cases[0].model.scene.frequencies, default=self.cases[0].model.scene.campbell.highest)
+        return tuple(
+            bands_over_speed(case.model, found, highest) for case, found in zip(self.cases, self.sweeps, strict=True)
+        )
+
+    def bounded(self) -> xr.Dataset:
+        """The data set with bounds of frequencies and damping ratios of complex modes."""
+        found = self.dataset
+        for name in ("frequency", "damping_ratio"):
+            own = found[f"complex_{name}"]
+            for index, (side, sign, words) in enumerate(zip(SIDES, (-1.0, 1.0), ("lower", "upper"), strict=True)):
+                parts = np.full(own.shape, np.nan)
+                for case, bands in enumerate(self.bands):
+                    part = getattr(bands, name)[index]
+                    parts[case, :, : part.shape[1]] = part
+                long = f"{words} bound of 90 % of what is not known of the {own.attrs['long_name']}"
+                attributes = {"units": own.attrs["units"], "long_name": long}
+                values = np.maximum(own.values * (1.0 + sign * parts), 0.0)
+                found = found.assign({f"complex_{name}_{side}": (own.dims, values, attributes)})
+        return found
 
     def plot(self) -> Figure:
         """Figure that `mbs sweep --plot` writes: modes, bearings and responses over speed, what is not valid marked."""
@@ -317,6 +346,29 @@ class CriticalResult:
     responses: tuple[OrderResponse, ...]
     dataset: xr.Dataset
     findings: tuple[Finding, ...] = ()
+
+    @cached_property
+    def bounds(self) -> FloatArray:
+        """Bounds of what is not known of the critical speeds [rad/s] and damping ratios there, shape (critical, 4).
+
+        They are low and high speed, low and high ratio, 90 % of what is not known; found when they are asked for.
+        """
+        from mbs.unknowns.over_speed import bands_over_speed, critical_bounds
+
+        if not self.found:
+            return np.zeros((0, 4))
+        highest = 1.05 * max(abs(entry.eigenvalue) for entry in self.found) / (2.0 * math.pi)
+        return critical_bounds(bands_over_speed(self.model, self.sweep, highest), self.sweep, self.found)
+
+    def bounded(self) -> xr.Dataset:
+        """The data set with these bounds."""
+        found = self.dataset
+        for column, (name, side) in enumerate(itertools.product(("critical_speed", "critical_damping_ratio"), SIDES)):
+            own = found[name]
+            words = f"{'lower' if side == 'low' else 'upper'} bound of 90 % of what is not known of the"
+            attributes = {"units": own.attrs["units"], "long_name": f"{words} {own.attrs['long_name']}"}
+            found = found.assign({f"{name}_{side}": (own.dims, self.bounds[:, column], attributes)})
+        return found
 
     def plot(self) -> Figure:
         """Figure that `mbs critical --plot` writes: modes with the orders, and the responses over speed."""

@@ -11,6 +11,8 @@ from ehdmaps.errors import InputError
 from ehdmaps.outputs import write_figure
 from ehdmaps.physics.designations.families import not_served
 from ehdmaps.physics.rollers.ribbed_geometry import ribbed_way
+from mbs.commands.common import with_bands
+from mbs.commands.one_bearing.bands import point_lines
 from mbs.commands.one_bearing.cylindrical import read_request
 from mbs.output.one_bearing.cylindrical import CYLINDRICAL
 from mbs.output.one_bearing.kind import Description, Kind, Points
@@ -27,23 +29,30 @@ RESOLUTION = 150
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Compute all points, describe and write them; status 1 where one is outside of what the laws hold for."""
+    asked: list[str] = []
+    banded = with_bands(arguments, asked)
+    if asked:
+        raise InputError(asked)
     family = _family(arguments)
     if family is None:
         cylinders = read_request(arguments)
         kind, description, points = CYLINDRICAL, cylinders.description, cylinders.points()
-        lines = point_text(kind, description, points, cylinders.beside(points))
+        bands = cylinders.bands(points) if banded else {}
+        told = point_lines(bands, cylinders.scene) if bands else []
+        lines = point_text(kind, description, points, [*cylinders.beside(points), *told])
         if arguments.output:
             from mbs.output.one_bearing.files import write_points
 
-            lines.append(write_points(kind, description, points, arguments.output))
+            lines.append(write_points(kind, description, points, arguments.output, bands))
     else:
         from mbs.commands.one_bearing import rolling  # with kernels that others do not need
 
         request = rolling.read_request(arguments, family)
         kind, description, points = family.kind, request.description, rolling.points_of(request)
-        lines = point_text(kind, description, points)
+        bands = rolling.bands_of(request, points) if banded else {}
+        lines = point_text(kind, description, points, point_lines(bands, rolling.scene_as(request)) if bands else ())
         if arguments.output:
-            lines.append(rolling.write_file(arguments.output, request, points))
+            lines.append(rolling.write_file(arguments.output, request, points, bands))
     if arguments.plot:
         lines.append(_drawn(arguments.plot, kind, description, points))
     return "\n".join(lines), 1 if any(point.problems for row in points for point in row) else 0

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.units import MOTIONS, RPM, written
 from mbs.analyses.case import Case
@@ -18,11 +19,12 @@ from mbs.analyses.soundness import Judged
 from mbs.analyses.sweep import CriticalResult, SweepSettings, critical_of, critical_plot, dataset_of_laws, orders
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Looked, read_cage_angles, write
+from mbs.commands.common import Looked, read_cage_angles, with_bands, write
 from mbs.commands.lsa import MOST_COMPARED_CASES
 from mbs.commands.sweep import read_speeds
 from mbs.linearised.critical import CriticalSpeed
 from mbs.linearised.linear import sensor_unit
+from mbs.output.band_text import HEAD, LOPSIDED, about_lines, deserved
 from mbs.output.model_text import clean, heading
 from mbs.output.reduction_text import reduction_lines
 from mbs.output.sweep_data import orbits, sensed
@@ -54,16 +56,18 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         _looks_at,
     )
     found = done.result
+    banded = with_bands(arguments, []) and found[0][1].model.scene.has_bearings
     judged = Judged([(label, entry.findings) for label, entry in found])
     lines, outside = [*judged.first, *done.lines], list[str]()
     for label, entry in found:
         outside += [line for line in _outside(entry) if line not in outside]
-        lines += _report(entry, label if found[1:] else "")
+        lines += _report(entry, label if found[1:] else "", banded)
     if found[1:]:
         lines += _beside(found)
     labels, results = [label for label, _ in found], [entry for _, entry in found]
+    banded = banded and not found[1:]
     figure = critical_plot(labels, results) if arguments.plot else None
-    dataset = dataset_of_laws(labels, results)
+    dataset = results[0].bounded() if banded else dataset_of_laws(labels, results)
     lines += judged.last + outside + write(arguments, judged.marked(dataset), figure)
     return "\n".join(lines), 1 if outside or judged.status else 0
 
@@ -83,6 +87,7 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
         settings = SweepSettings(read_speeds(arguments.speed) if arguments.speed else None)
     except InputError as error:
         problems += error.problems
+    with_bands(arguments, problems)
     settings = dataclasses.replace(settings, cage_angles=read_cage_angles(arguments, problems))
     try:
         cases = load_cases(arguments)
@@ -107,7 +112,7 @@ def _outside(found: CriticalResult) -> list[str]:
     return outside_lines(found.outside, words, axes, sources=sources_of(model))
 
 
-def _report(found: CriticalResult, label: str) -> list[str]:
+def _report(found: CriticalResult, label: str, banded: bool) -> list[str]:
     """Lines of one law; its label is empty if it is the only one, else critical speeds come in a table of all."""
     model, swept = found.model, found.sweep.speeds
     more = np.setdiff1d(found.speeds, swept).size
@@ -115,7 +120,7 @@ def _report(found: CriticalResult, label: str) -> list[str]:
         *heading(model),
         *([f"  case: {label}"] if label else []),
         f"  {swept.size} speeds from {_rpm(swept[0])} to {_rpm(np.abs(swept).max())}, {more} more around critical ones",
-        *([] if label else _critical(found)),
+        *([] if label else _critical(found, banded)),
         *_responses(found),
         *_reduction(found),
         *fade_lines(model, swept),
@@ -134,7 +139,7 @@ def _beside(found: list[tuple[str, CriticalResult]]) -> list[str]:
     """A table of the critical speeds of all laws, for each order in rising speed."""
     rows = [(entry, label) for label, result in found for entry in result.found]
     if not rows:
-        return _critical(found[0][1])
+        return _critical(found[0][1], False)
     rows.sort(key=lambda row: (row[0].order, row[0].speed))
     none = [f"  none of {label}" for label, result in found if not result.found]
     return [f"{_HEAD:{_WIDTH}}   law", *(f"{_row(entry):{_WIDTH}}   {label}" for entry, label in rows), *none]
@@ -149,12 +154,28 @@ def _looks_at(asked: _Asked) -> Looked:
     return Looked(over_speeds(model.scene, speeds), highest)
 
 
-def _critical(result: CriticalResult) -> list[str]:
-    """A table of the critical speeds."""
+def _critical(result: CriticalResult, banded: bool) -> list[str]:
+    """A table of the critical speeds, and one of their bands."""
     tried = ", ".join(f"{order:.4g}" for order in orders(result.model.system))
     if not result.found:
         return [f"no critical speed for order {tried}"]
-    return [_HEAD, *map(_row, result.found)]
+    bands = (
+        [_band_row(entry, bounds) for entry, bounds in zip(result.found, result.bounds, strict=True)] if banded else []
+    )
+    if bands:
+        bands = [f"  {HEAD:36s} speed                  damping ratio", *bands, *about_lines(result.model.scene)]
+    return [_HEAD, *map(_row, result.found), *bands]
+
+
+def _band_row(entry: CriticalSpeed, bounds: FloatArray) -> str:
+    """Line of the bounds of a critical speed."""
+    words = []
+    for value, bound in ((RPM.value(entry.speed), RPM.value(1.0) * bounds[:2]), (entry.damping_ratio, bounds[2:])):
+        fall, rise = value - float(bound[0]), float(bound[1]) - value
+        side = max(min(fall, rise), LOPSIDED * max(fall, rise))
+        known = math.isfinite(side)
+        words.append(f"{deserved(value - fall, side)} to {deserved(value + rise, side)}" if known else "-")
+    return f"  mode {entry.mode + 1:4d} {entry.order:14.4g} {'':11s} {words[0] + ' rpm':22s} {words[1]}"
 
 
 def _row(entry: CriticalSpeed) -> str:

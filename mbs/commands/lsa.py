@@ -7,23 +7,35 @@ from pathlib import Path
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.exports.mat import KIND
 from ehdmaps.outputs import FIGURE, Output, output_problems
+from ehdmaps.units import written
 from mbs.analyses.case import Case
 from mbs.analyses.lsa import LsaResult, LsaSettings, lsa_dataset, lsa_figure, lsa_of, lsa_problems
 from mbs.analyses.reach import fade_lines, outside_at
 from mbs.analyses.soundness import Judged
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Looked, read_cage_angles, write
+from mbs.commands.common import Looked, read_cage_angles, with_bands, write
 from mbs.linearised.linear import peak_places, response_display
+from mbs.output.band_text import (
+    DECIDED,
+    HEAD,
+    about_lines,
+    bounds_text,
+    exact_text,
+    lost_lines,
+    value_text,
+)
 from mbs.output.files import RESULT
 from mbs.output.model_text import band_lines, film_lines, heading
 from mbs.output.reduction_text import reduction_lines
 from mbs.output.state_space_file import write_spaces
 from mbs.planning.question import at_one_speed
 from mbs.scene.assembly import Model
+from mbs.unknowns.of_peaks import PeakBands
 
 MOST_COMPARED_CASES = 8
 """That can be told apart in a figure."""
@@ -33,6 +45,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Linearise, and compute the responses over the frequencies of the scene, with each law."""
     problems: list[str] = []
     settings = LsaSettings(cage_angles=read_cage_angles(arguments, problems))
+    banded = with_bands(arguments, problems)
     if problems:
         raise InputError(problems)
     done = analysed(
@@ -45,12 +58,13 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     labels, results = [label for label, _ in found], [entry for _, entry in found]
     figure = lsa_figure(labels, results) if arguments.plot else None
     judged = Judged([(label, entry.findings) for label, entry in found])
+    banded = banded and not found[1:] and results[0].model.scene.has_bearings
     lines = [*judged.first, *done.lines]
     outside: list[str] = []
     for label, entry in found:
         outside += [line for line in outside_at(entry.model, entry.balance) if line not in outside]
-        lines += _report(entry, label if found[1:] else "")
-    dataset = judged.marked(lsa_dataset(labels, results))
+        lines += _report(entry, label if found[1:] else "", banded)
+    dataset = judged.marked(results[0].bounded() if banded else lsa_dataset(labels, results))
     lines += [*judged.last, *outside, *write(arguments, dataset, figure)]
     if file := getattr(arguments, "state_space", None):
         write_spaces(Path(file), found)
@@ -91,7 +105,7 @@ def _looks_at(cases: list[Case]) -> Looked:
     return Looked(at_one_speed(scene), max(scene.frequencies, default=0.0))
 
 
-def _report(found: LsaResult, label: str) -> list[str]:
+def _report(found: LsaResult, label: str, banded: bool) -> list[str]:
     """Lines of one case; its label is empty if it is the only one."""
     model, scene, frequencies = found.model, found.model.scene, found.frequencies
     return [
@@ -100,8 +114,8 @@ def _report(found: LsaResult, label: str) -> list[str]:
         f"state space: {found.space.A.shape[0]} states, {len(scene.inputs)} inputs, {len(scene.sensors)} outputs; "
         f"{found.asked} frequencies, and {frequencies.size - found.asked} more around lightly "
         "damped modes",
-        *_peaks(model, found),
-        *band_lines(model, found.film_share),
+        *(_peak_bands(model, found) if banded else _peaks(model, found)),
+        *band_lines(model, found.film_share, banded),
         *_reduction(found),
         *film_lines(found.errors, frequencies),
         *(fade_lines(model, np.array([scene.speed])) if scene.speed else []),
@@ -114,6 +128,39 @@ def _reduction(found: LsaResult) -> list[str]:
     seen = (modes.frequency <= found.frequencies.max()) & (modes.eigenvalues.imag > 0.0)
     part = None if modes.reduction is None else modes.reduction.of(seen)
     return reduction_lines(found.balance.system, modes.frequency[seen], modes.damping_ratio[seen], part)
+
+
+def _peak_bands(model: Model, found: LsaResult) -> list[str]:
+    """Lines of the peaks of each response, with what is not known of them and what decides that."""
+    bands, lines = found.bands, []
+    for s, sensor in enumerate(model.scene.sensors):
+        for i, entry in enumerate(model.scene.inputs):
+            display = response_display(sensor, entry)
+            size = display.factor * np.abs(found.responses[:, s, i])
+            begin = f"  {sensor.name} ({sensor.quantity}, {display.unit}) by {entry.name}: "
+            rows = []
+            for k in peak_places(size).tolist():
+                place = bands.place(k, s, i)
+                if place is None:
+                    rows.append(
+                        f"  {found.frequencies[k]:9.5g} {'-':20s} {written(size[k]):>9s}   - (of no single mode)"
+                    )
+                    continue
+                low, high = (10.0 ** ((end[place] - bands.level.value[place]) / 20.0) * size[k] for end in _ends(bands))
+                reach = f"{written(low, 2)} to {written(high, 2)}"
+                rows.append(
+                    f"  {value_text(bands.frequency, place):>9s} {bounds_text(bands.frequency, place):20s} "
+                    f"{written(size[k], 2):>9s}   {reach:20s} {exact_text(bands.level, place, 'dB')}"
+                )
+            heads = f"peaks: frequency/Hz, {HEAD}; size, 90 %; level {DECIDED}"
+            lines += [begin + heads, *rows] if rows else [begin + "no peak"]
+    names = [f"peak {k + 1}" for k in range(bands.places.shape[0])]
+    return [*lines, *lost_lines(bands.frequency, names), *about_lines(model.scene)]
+
+
+def _ends(bands: PeakBands) -> tuple[FloatArray, FloatArray]:
+    """Bounds of the levels."""
+    return bands.level.low, bands.level.high
 
 
 def _peaks(model: Model, found: LsaResult) -> list[str]:

@@ -17,14 +17,16 @@ from mbs.bearings.contact_report import BearingContacts
 from mbs.bearings.force_at_point import RollerLoads
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_model
-from mbs.commands.common import Looked, write
+from mbs.commands.common import Looked, with_bands, write
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.on_rings import ring_matrices
 from mbs.model.relaxation import NOTABLE
+from mbs.output.band_text import about_lines, bearing_quantities, lost_lines, quantity_lines
 from mbs.output.model_text import heading
 from mbs.output.state_text import DAMPINGS, STIFFNESSES, flooded_note, largest_torque, life_lines, loss_words
 from mbs.planning.question import at_one_speed
 from mbs.scene.assembly import Model, ring_motions
+from mbs.unknowns.bounds import bounded
 
 _SHOWN = (1, 2, 4, 5)
 _ROUND_OFF = 1e-9
@@ -38,6 +40,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     found = done.result
     model = found.model
     balance, contacts = found.balance, found.contacts
+    bands = found.bands if with_bands(arguments, []) and model.scene.has_bearings else {}
     figure = found.plot() if arguments.plot else None
     judged = Judged([("", found.findings)])
     lines = [
@@ -76,12 +79,16 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         from mbs.output.results import gear_lines
 
         lines += gear_lines(model, balance)
+    if bands:
+        names = [str(name) for name in found.dataset["bearing"].values]
+        lines += [*quantity_lines(list(bearing_quantities(names, bands))), *about_lines(model.scene)]
+        lines += [line for line in lost_lines(next(iter(bands.values())), []) if "not in the bands" in line]
     lines += flooded_note(largest_torque(found.losses), model.supplies.values())
     lines += _slow(model, balance) if model.supplies or others else []
     lines += fade_lines(model, np.array([model.scene.speed]))
     outside = outside_at(model, balance)
     lines += [*judged.last, *(f"warning: {line}" for line in found.free), *outside]
-    lines += write(arguments, found.dataset if arguments.output else None, figure)
+    lines += write(arguments, bounded(found.dataset, bands) if arguments.output else None, figure)
     return "\n".join(lines), 1 if outside or judged.status else 0
 
 
@@ -99,6 +106,10 @@ def _slow(model: Model, balance: Equilibrium) -> list[str]:
 
 def _asked(arguments: argparse.Namespace) -> Model:
     """The model, whose rollers are drawn if asked for."""
+    problems: list[str] = []
+    with_bands(arguments, problems)
+    if problems:
+        raise InputError(problems)
     model = load_model(arguments)
     if arguments.plot and not model.on_rings:
         raise InputError(f"--plot: {model.scene.name} has no bearing of rollers or balls to draw; leave it out")

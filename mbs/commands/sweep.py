@@ -20,12 +20,13 @@ from mbs.analyses.soundness import Judged
 from mbs.analyses.sweep import SweepSettings, sweep, sweep_problems, waterfall_problems
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Looked, read_cage_angles, write, write_plot
+from mbs.commands.common import Looked, read_cage_angles, with_bands, write, write_plot
 from mbs.linearised.linear import response_display
 from mbs.linearised.modes import free_motions
 from mbs.linearised.sweep_result import Sweep, exchanged
 from mbs.model.elements import Operation
 from mbs.model.system import System
+from mbs.output.band_text import DECIDED, HEAD, about_lines, bounds_text, exact_text
 from mbs.output.model_text import (
     ROUND_OFF,
     band_lines,
@@ -40,6 +41,7 @@ from mbs.planning.question import over_speeds
 from mbs.scene.assembly import Model
 from mbs.scene.scene import Scene
 from mbs.settings import MOST_SPEEDS, SweepRange
+from mbs.unknowns.over_speed import SpeedBands
 
 if TYPE_CHECKING:
     pass
@@ -59,6 +61,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         _looks_at,
     )
     result = done.result
+    banded = with_bands(arguments, []) and len(result.cases) == 1 and result.cases[0].model.scene.has_bearings
     cases, found = result.cases, result.sweeps
     judged = Judged(list(zip([case.label for case in cases], result.findings, strict=True)))
     lines = [*judged.first, *done.lines]
@@ -77,6 +80,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *_undamped(entry, case.model.system),
             *_complex(entry),
             *_reduction(entry, case.model),
+            *(_complex_bands(entry, result.bands[0], case.model) if banded else []),
             *_responses(entry),
             *band_lines(case.model, entry.film_share),
             *_exchanged(entry),
@@ -86,7 +90,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *fade_lines(case.model, entry.speeds),
         ]
     figure = result.plot() if arguments.plot else None
-    lines += judged.last + outside + write(arguments, result.dataset, figure)
+    lines += judged.last + outside + write(arguments, result.bounded() if banded else result.dataset, figure)
     if arguments.waterfall:
         lines += write_plot(result.waterfall(), arguments.waterfall)
     return "\n".join(lines), 1 if outside or judged.status else 0
@@ -116,6 +120,7 @@ def _read(arguments: argparse.Namespace) -> tuple[SweepSettings, list[Case]]:
     except InputError as error:
         problems += error.problems
     angles = read_cage_angles(arguments, problems)
+    with_bands(arguments, problems)
     try:
         cases = load_cases(arguments, needs=lambda scene: _needs(arguments, scene), speeds=speeds)
     except InputError as error:
@@ -297,6 +302,23 @@ def _reduction(result: Sweep, model: Model) -> list[str]:
         found.damping_ratio,
         found.reduction,
     )
+
+
+def _complex_bands(result: Sweep, bands: SpeedBands, model: Model) -> list[str]:
+    """Lines on what the complex modes with strain energy in the bearings may be, at each speed that was looked at."""
+    found = result.damped
+    shares = np.nanmax(found.bearing_share, axis=0, initial=0.0)
+    lines = []
+    for place, at, tracks in zip(bands.places, bands.at, bands.tracks, strict=True):
+        shown = [k for k in np.flatnonzero((shares >= _least(result)) & (tracks >= 0)).tolist()]
+        rows = [
+            f"  {found.number[k] + 1:4d} {bounds_text(at.frequency, tracks[k]):24s} "
+            f"{bounds_text(at.damping_ratio, tracks[k]):30s} {exact_text(at.frequency, tracks[k])}"
+            for k in sorted(shown, key=lambda k: int(found.number[k]))
+        ]
+        at_speed = RPM.text(float(result.speeds[place]))
+        lines += [f"  at {at_speed}, {HEAD}: frequency/Hz, damping ratio; frequency {DECIDED}", *rows] if rows else []
+    return [*lines, *about_lines(model.scene)] if lines else []
 
 
 def _responses(result: Sweep) -> list[str]:

@@ -6,12 +6,13 @@ Commands, reports and figures say these things alike, by the functions here.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ehdmaps.arrays import IntArray
+from ehdmaps.units import DAMPER, FILM, PRESSURE, SPRING
 from mbs.output.result_text import share_words
 from mbs.scene.scene import Scene
 from mbs.unknowns.held_open import held_open
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
 HEAD = "90 % of what is not known"
 """Heading of bounds."""
 
+DECIDED = "decided by; and the band if the first, of all bearings, were exact"
+"""Heading of what decides bands, and of what stating it would give."""
+
 NOT_IN_IT = "oil supply, damping of seats and joints, loads, and masses and bodies of the scene"
 """What no band holds, of any machine."""
 
@@ -31,7 +35,7 @@ BALL_CAGE = "the cage hypothesis of balls"
 """What bands of machines with balls do not hold besides."""
 
 
-_LOPSIDED = 0.1
+LOPSIDED = 0.1
 """Part of the larger side of a band below which the smaller one makes no more digits."""
 
 
@@ -62,7 +66,7 @@ def deserved(value: float, side: float) -> str:
 def side_of(band: Band, place: int) -> float:
     """Side of a band by whose digits it is written: the smaller one, but at least a tenth of the other."""
     sides = float(band.rise[place]), float(band.fall[place])
-    return max(min(sides), _LOPSIDED * max(sides))
+    return max(min(sides), LOPSIDED * max(sides))
 
 
 def value_text(band: Band, place: int) -> str:
@@ -95,7 +99,7 @@ def term_words(terms: Sequence[Term]) -> str:
     return ", ".join(f"{kind} of {' and '.join(names)}" if names else kind for kind, names in kinds.items())
 
 
-def exact_text(band: Band, place: int) -> str:
+def exact_text(band: Band, place: int, relative: str = "") -> str:
     """What decides a value, and its bounds if the largest of that were stated exactly.
 
     Parameters
@@ -104,10 +108,15 @@ def exact_text(band: Band, place: int) -> str:
         Bands of several values.
     place : int
         Which of them.
+    relative : str
+        Unit of a level, whose bounds are then told as its changes.
     """
     terms = band.largest(place)
     if not terms:
         return "nothing"
+    if relative:
+        less = band.without(terms[0].group)
+        return f"{term_words(terms)}; -{less.fall[place]:.1f} to +{less.rise[place]:.1f} {relative}"
     return f"{term_words(terms)}; {bounds_text(band.without(terms[0].group), place)}"
 
 
@@ -176,8 +185,72 @@ def mode_lines(found: Modes, shown: IntArray, bands: ModeBands) -> list[str]:
             decided.append(f"  {k + 1:4d}  {words[0]:62s} {words[1]}")
     if decided:
         lines += [
-            "  decided by; and the band if the first of it were exact",
+            "  decided by; and the band if the first, of all bearings, were exact",
             f"  mode  {'frequency/Hz':62s} damping ratio",
         ]
     names = [f"mode {k + 1}" for k in bands.chosen]
     return [*lines, *decided, *lost_lines(bands.frequency, names)]
+
+
+class Quantity(NamedTuple):
+    """A number with its band, for the table of bands.
+
+    Attributes
+    ----------
+    of, name, unit : str
+        Bearing or other part, quantity, and unit.
+    band : Band
+        Band of the one value, in this unit.
+    """
+
+    of: str
+    name: str
+    unit: str
+    band: Band
+
+
+def quantity_lines(quantities: Sequence[Quantity]) -> list[str]:
+    """Table of numbers with their bands and what decides these; values that are not there are left out.
+
+    Parameters
+    ----------
+    quantities : sequence of Quantity
+        The numbers.
+    """
+    there = [one for one in quantities if np.isfinite(one.band.value) and one.band.value != 0.0]
+    if not there:
+        return []
+    wide = max(len(one.of) for one in there)
+    lines = [f"  {'':{wide}s}  {'':20s} {'value':>9s}   {HEAD:26s}  {DECIDED}"]
+    for last, one in zip([None, *there], there, strict=False):
+        of = "" if last is not None and last.of == one.of else one.of
+        band = one.band.of(None)
+        lines.append(
+            f"  {of:{wide}s}  {f'{one.name}, {one.unit}':20s} {value_text(band, 0):>9s}   {bounds_text(band, 0):26s}  "
+            f"{exact_text(band, 0)}"
+        )
+    return lines
+
+
+def bearing_quantities(names: Sequence[str], bands: Mapping[str, Band]) -> Iterator[Quantity]:
+    """Numbers of the bearings of a machine at rest: K and C along the axes, pressure, film and load.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Names of the bearings, in the order of the bands.
+    bands : mapping of str to Band
+        Bands by the names of the variables of statics.
+    """
+    for index, name in enumerate(names):
+        for letter, variable, shown in (("K", "bearing_stiffness", SPRING), ("C", "bearing_damping", DAMPER)):
+            for k, axis in enumerate("xyz"):
+                yield Quantity(
+                    name, f"{letter} {axis}", shown.unit, bands[variable].of((index, k, k)).scaled(shown.factor)
+                )
+        for words, variable, shown in (("pressure", "hertz_pressure", PRESSURE), ("film", "minimum_film", FILM)):
+            if variable in bands:
+                worst = int(np.argmax(bands[variable].value[index] * (1.0 if words == "pressure" else -1.0)))
+                yield Quantity(name, words, shown.unit, bands[variable].of((index, worst)).scaled(shown.factor))
+        if "highest_raceway_load" in bands:
+            yield Quantity(name, "highest load", "N", bands["highest_raceway_load"].of(index))

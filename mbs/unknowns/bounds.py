@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -36,4 +37,19 @@ def with_bounds(dataset: xr.Dataset, name: str, band: Band, places: Any = ...) -
             "long_name": f"{words} bound of 90 % of what is not known of the {own.attrs['long_name']}",
         }
         dataset = dataset.assign({f"{name}_{side}": (own.dims, bounds, attributes)})
+    return dataset
+
+
+def bounded(dataset: xr.Dataset, bands: Mapping[str, Band]) -> xr.Dataset:
+    """A data set with the bounds of several whole variables; those that it lacks are left out.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The data set.
+    bands : mapping of str to Band
+        Bands by the names of the variables.
+    """
+    for name, band in bands.items():
+        dataset = with_bounds(dataset, name, band)
     return dataset

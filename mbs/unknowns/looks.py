@@ -78,6 +78,8 @@ class Band:
         Number of looks.
     refused : tuple of str
         Unknowns that could not be looked at, each with the reason.
+    signed : array of bool, same shape, or None
+        True for values that may have either sign, such as levels and coupling stiffnesses; None: none of them.
     """
 
     value: FloatArray
@@ -86,6 +88,7 @@ class Band:
     lost: IntArray
     looks: int = 0
     refused: tuple[str, ...] = ()
+    signed: BoolArray | None = None
 
     @cached_property
     def rise(self) -> FloatArray:
@@ -106,7 +109,8 @@ class Band:
     def low(self) -> FloatArray:
         """Lower bounds."""
         least = self.value - self._together([term.fall for term in self.terms])
-        return np.where(self.value >= 0.0, np.maximum(least, 0.0), least)
+        signed = np.zeros(self.value.shape, dtype=np.bool_) if self.signed is None else self.signed
+        return np.where(signed | (self.value < 0.0), least, np.maximum(least, 0.0))
 
     @property
     def smaller(self) -> FloatArray:
@@ -126,7 +130,8 @@ class Band:
         """The band of some of the values, by any index of arrays."""
         terms = (dataclasses.replace(t, rise=t.rise[place], fall=t.fall[place]) for t in self.terms)
         value, numerics = self.value[place], self.numerics[place]
-        return Band(value, numerics, tuple(terms), self.lost[place], self.looks, self.refused)
+        signed = None if self.signed is None else self.signed[place]
+        return Band(value, numerics, tuple(terms), self.lost[place], self.looks, self.refused, signed)
 
     def scaled(self, factor: float) -> Band:
         """The band in another unit."""

@@ -96,7 +96,7 @@ class ModeLook:
     modes : Modes
         Its modes.
     chosen : array of int, shape (modes,)
-        Which of them are looked for.
+        Which of them are looked for; the same one may be there several times.
     """
 
     model: Model
@@ -111,9 +111,9 @@ class ModeLook:
 
     def paired(self, balance: Equilibrium, found: Modes) -> FloatArray:
         """Values of the modes of the reference in another system."""
-        shapes = self.modes.shapes[:, self.chosen]
-        partner = partners(self.balance.system, shapes, balance.system, found.shapes)
-        partner = in_order(self.modes.frequency[self.chosen], partner, found.frequency)
+        own, places = np.unique(self.chosen, return_inverse=True)
+        partner = partners(self.balance.system, self.modes.shapes[:, own], balance.system, found.shapes)
+        partner = in_order(self.modes.frequency[own], partner, found.frequency)[places]
         values = np.array([found.frequency[partner], found.damping_ratio[partner]])
         return np.where(partner >= 0, values, np.nan)
 

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from ehdmaps.errors import AnalysisError
 from mbs.analyses.modes import modes
@@ -124,8 +125,6 @@ def test_modes_have_bands_in_files(rigid, tmp_path, monkeypatch, capsys):
     assert "90 % of what is not known" in out and "decided by" in out and "held open: " in out
     assert main(["modes", "nu308_rigid", "--bands", "numerics", "-o", "numerics.nc"]) == 0
     assert "90 %" not in capsys.readouterr().out
-    import xarray as xr
-
     with xr.open_dataset("all.nc") as one, xr.open_dataset("numerics.nc") as other:
         assert np.all(one["frequency"].values == other["frequency"].values)
         inside = np.isfinite(one["frequency_low"].values)
@@ -138,3 +137,37 @@ def test_modes_have_bands_in_files(rigid, tmp_path, monkeypatch, capsys):
 def test_bands_of_another_kind_are_refused(capsys):
     assert main(["modes", "nu308_rigid", "--bands", "3"]) == 2
     assert "--bands: got '3'; allowed: all, numerics" in capsys.readouterr().err
+
+
+def test_a_look_at_one_bearing_is_the_command_with_another_clearance(tmp_path, monkeypatch, capsys):
+    """Bounds of K reach those of the far end of the clearance, which is an option; dry, so that nothing else counts."""
+    monkeypatch.chdir(tmp_path)
+    asked = ["bearing", "6208", "--load", "1 kN", "--speed", "0 rpm", "--law", "hertz"]
+    assert main([*asked, "--bands", "all", "-o", "all.nc"]) == 0
+    assert "clearance of bearing" in capsys.readouterr().out
+    assert main([*asked, "--clearance", "20 um", "-o", "away.nc"]) == 0
+    with xr.open_dataset("all.nc") as one, xr.open_dataset("away.nc") as other:
+        for name in ("stiffness_along", "stiffness_across"):
+            assert one[f"{name}_low"].item() <= other[name].item() * (1.0 + 1e-6)
+
+
+@pytest.mark.parametrize(
+    ("asked", "names"),
+    [
+        (["statics"], ["bearing_stiffness", "hertz_pressure"]),
+        (["lsa"], ["peak_frequency", "peak_level"]),
+        (["sweep", "--speed", "1000 rpm", "2000 rpm", "3"], ["complex_frequency", "complex_damping_ratio"]),
+        (["critical", "--speed", "1000 rpm", "4000 rpm", "3"], ["critical_speed", "critical_damping_ratio"]),
+    ],
+    ids=["statics", "lsa", "sweep", "critical"],
+)
+def test_results_lie_within_their_bands(asked, names, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main([asked[0], "nu308_rigid", *asked[1:], "--bands", "all", "-o", "all.nc"]) == 0
+    assert "held open: " in capsys.readouterr().out
+    with xr.open_dataset("all.nc") as found:
+        for name in names:
+            low, value, high = (found[f"{name}{end}"].values for end in ("_low", "", "_high"))
+            known = np.isfinite(low)
+            assert known.any() and np.all((low[known] <= value[known]) & (high[known] >= value[known]))
+            assert np.any(high[known] > low[known])

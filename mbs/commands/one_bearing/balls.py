@@ -94,7 +94,8 @@ def _at_speed(request: Request) -> Callable[[float], AtSpeed]:
                 raise AnalysisError(f"{RPM.text(speed)}: {words}, and contacts of --law hertz have none") from error
             words = f"{RPM.text(speed)}: dry and without damping, as the {words}{_BY_FORMULA}"
             return AtSpeed(request.force, problems=(words,))
-        tell(f"{RPM.text(speed)}: films {films.words}")
+        if not request.trial:
+            tell(f"{RPM.text(speed)}: films {films.words}")
         return AtSpeed(BallForce(geometry, films.law), films)
 
     return at

@@ -32,6 +32,7 @@ from mbs.bearings.contact_report import BearingPoint
 from mbs.bearings.films import SIDES, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.laws import Law
 from mbs.bearings.thermal import BearingState, Mounting, operating_clearance
+from mbs.commands.one_bearing.bands import NAME, point_bands, scene_of, turned
 from mbs.commands.one_bearing.shared import (
     CELSIUS_40,
     ROUGHNESS,
@@ -45,7 +46,7 @@ from mbs.commands.one_bearing.shared import (
     read_whole,
 )
 from mbs.output.files import result_kind
-from mbs.output.one_bearing.cylindrical import asperity_band
+from mbs.output.one_bearing.cylindrical import CYLINDRICAL, asperity_band
 from mbs.output.one_bearing.kind import Description, Points
 from mbs.scene.choices import LACKS
 from mbs.scene.contact_laws import (
@@ -60,6 +61,9 @@ from mbs.scene.contact_laws import (
 )
 from mbs.scene.fields import MICROMETRE
 from mbs.scene.map_set import TABLE_LAW, geometry_problems, structure_words
+from mbs.scene.scene import Scene
+from mbs.scene.specs import BearingSpec
+from mbs.unknowns.looks import Band
 
 if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
@@ -214,6 +218,59 @@ class BearingRequest:
         """Points by load, then by speed."""
         law, loads = law_of(self), self.load_vectors
         return bearing_points(self.bearing, law, self.films, loads, self.speeds, self.temperature)
+
+    @property
+    def scene(self) -> Scene:
+        """The bearing as the only one of a scene, to ask what is not known of it."""
+        bearing = self.bearing
+        spec = BearingSpec(NAME, "", "", bearing.geometry, bearing.profile, bearing.slices)
+        return scene_of(spec, self.oil, self.temperature)
+
+    def again(self, scene: Scene) -> BearingRequest:
+        """The same request of a scene that is a little different; a map from a file stays what it is.
+
+        Raises
+        ------
+        InputError
+            For a map from a file that was made for other rollers, and where heat is stated of the rings.
+        """
+        (spec,) = scene.bearings
+        bearing = dataclasses.replace(self.bearing, geometry=spec.geometry, profile=spec.profile)
+        oil, emap, kelvin = scene.lubricant or self.oil, self.emap, scene.temperature
+        if emap is not None and emap.from_table:
+            structure = emap.structural_law
+            made = _table_map(spec.geometry, oil, bearing.material, self.speeds, kelvin)
+            emap = made.with_structure(structure)
+        elif emap is not None and (wrong := geometry_problems("the bearing", spec.geometry, emap)):
+            raise InputError(wrong)
+        contacts = spec.geometry.contacts(bearing.material, "iso16281")
+        return dataclasses.replace(
+            self,
+            bearing=bearing,
+            emap=emap,
+            oil=oil,
+            films=MapFilms(emap, self.supply) if emap is not None else FormulaFilms(contacts, oil, self.supply),
+            direction=turned(self.direction, spec.start_angle),
+            temperature=kelvin,
+            description=dataclasses.replace(self.description, oil=oil, temperature=kelvin),
+        )
+
+    def bands(self, points: Points) -> dict[str, Band]:
+        """Bands of what is not known of a single point, by the names of its numbers; none of several.
+
+        Parameters
+        ----------
+        points : sequence of sequence
+            Points by load, then by speed.
+        """
+        if len(self.loads) * len(self.speeds) > 1 or points[0][0].failed:
+            return {}
+
+        def again(scene: Scene) -> tuple[Description, BearingPoint]:
+            other = self.again(scene)
+            return other.description, other.points()[0][0]
+
+        return point_bands(CYLINDRICAL, self.description, points[0][0], self.scene, again)
 
     def beside(self, points: Points) -> list[str]:
         """Lines on one point with the softest and with the stiffest usual asperities; none of smooth surfaces.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ehdmaps.physics.lubricant import Lubricant
@@ -62,8 +63,10 @@ class Request:
     ----------
     family : Family
         Family of the bearing.
-    force : BallForce or TaperedForce
-        Geometry, and its dry law.
+    asked : Asked
+        The bearing, with what its force takes beside.
+    damper : Damper
+        Damper of its dry law.
     films : str
         Law with films, by name; empty where the law is dry.
     by_default : bool
@@ -78,10 +81,13 @@ class Request:
         Loads and speeds.
     description : Description
         The same in words.
+    trial : bool
+        Whether it is a changed one, for a band: its films are not told of.
     """
 
     family: Family
-    force: Any
+    asked: Asked
+    damper: Damper
     films: str
     by_default: bool
     memory: bool
@@ -89,6 +95,12 @@ class Request:
     surface: Surface
     operating: Operating
     description: Description
+    trial: bool = False
+
+    @cached_property
+    def force(self) -> Any:
+        """Geometry, and its dry law: a BallForce or a TaperedForce."""
+        return self.family.force(self.asked, self.damper)
 
     def entrainment_speed(self, speed: float) -> float:
         """Entrainment speed at a speed of the inner ring [rad/s], in m/s."""

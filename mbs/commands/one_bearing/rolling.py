@@ -13,7 +13,8 @@ from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.physics.lubricant import DEFAULT_OIL
 from ehdmaps.units import TEMPERATURE
 from mbs.analyses.bearing_point import points_over, without_holes
-from mbs.commands.one_bearing.family import AtSpeed, Family, Request
+from mbs.commands.one_bearing.bands import NAME, point_bands, scene_of, turned
+from mbs.commands.one_bearing.family import Asked, AtSpeed, Family, Request
 from mbs.commands.one_bearing.files import Export, bearing_outputs, is_export, write_export
 from mbs.commands.one_bearing.linear_files import count_problems, ending_of
 from mbs.commands.one_bearing.shared import (
@@ -31,6 +32,9 @@ from mbs.output.one_bearing.files import write_points
 from mbs.output.one_bearing.kind import Description
 from mbs.scene.contact_laws import Damper
 from mbs.scene.map_set import TABLE_LAW
+from mbs.scene.scene import Scene
+from mbs.scene.specs import BallSpec, TaperedSpec
+from mbs.unknowns.looks import Band
 
 
 def read_request(arguments: argparse.Namespace, family: Family) -> Request:
@@ -83,7 +87,8 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
     )
     return Request(
         family=family,
-        force=family.force(asked, damper),
+        asked=asked,
+        damper=damper,
         films=films,
         by_default="law" not in chosen,
         memory=chosen.get("films") == "memory",
@@ -117,6 +122,55 @@ def points_of(request: Request) -> list[list[Any]]:
     return points_over(loads, asked.speeds, lambda load, speed: _point(request, load, speed, at_speed(speed)))
 
 
+def scene_as(request: Request) -> Scene:
+    """The bearing as the only one of a scene, to ask what is not known of it.
+
+    Parameters
+    ----------
+    request : Request
+        What is asked.
+    """
+    geometry, options = request.asked
+    kind = TaperedSpec if "profile" in options else BallSpec
+    spec = kind(NAME, "", "", geometry, **options)
+    return scene_of(spec, request.oil, request.description.temperature)
+
+
+def bands_of(request: Request, points: list[list[Any]]) -> dict[str, Band]:
+    """Bands of what is not known of a single point, by the names of its numbers; none of several.
+
+    Parameters
+    ----------
+    request : Request
+        What is asked.
+    points : list of list
+        Points by load, then by speed.
+    """
+    if len(points) * len(points[0]) > 1 or points[0][0].failed:
+        return {}
+
+    def again(scene: Scene) -> tuple[Description, Any]:
+        other = _changed(request, scene)
+        return other.description, points_of(other)[0][0]
+
+    return point_bands(request.family.kind, request.description, points[0][0], scene_as(request), again)
+
+
+def _changed(request: Request, scene: Scene) -> Request:
+    """The same request of a scene that is a little different."""
+    (spec,) = scene.located
+    options = {name: getattr(spec, name) for name in request.asked.options}
+    oil, kelvin = scene.lubricant or request.oil, scene.temperature
+    return dataclasses.replace(
+        request,
+        asked=Asked(spec.geometry, options),
+        oil=oil,
+        operating=request.operating._replace(way=turned(request.operating.way, spec.start_angle)),
+        description=dataclasses.replace(request.description, oil=oil, temperature=kelvin),
+        trial=True,
+    )
+
+
 def _point(request: Request, load: tuple[float, float, float], speed: float, at: AtSpeed) -> Any:
     """The point at a load and a speed, with what is to be said of its films."""
     description = request.description
@@ -134,7 +188,7 @@ def _point(request: Request, load: tuple[float, float, float], speed: float, at:
     return dataclasses.replace(point, findings=(*point.findings, *told))
 
 
-def write_file(path: str, request: Request, points: list[list[Any]]) -> str:
+def write_file(path: str, request: Request, points: list[list[Any]], bands: dict[str, Band]) -> str:
     """Write the file of -o, and return what was written in words.
 
     Parameters
@@ -145,6 +199,8 @@ def write_file(path: str, request: Request, points: list[list[Any]]) -> str:
         What was asked.
     points : list of list
         Points by load, then by speed.
+    bands : dict of str to Band
+        Bands of the only one.
 
     Raises
     ------
@@ -153,7 +209,7 @@ def write_file(path: str, request: Request, points: list[list[Any]]) -> str:
     """
     family, description = request.family, request.description
     if not is_export(path):
-        return write_points(family.kind, description, points, path)
+        return write_points(family.kind, description, points, path, bands)
     row, outer_speed = without_holes(path, points[0]), request.operating.outer_speed
     films, memory = family.films(request), request.memory
     try:

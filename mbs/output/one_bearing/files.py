@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,8 +19,12 @@ from mbs.output.one_bearing.kind import Description, Kind, Number, Points, Row, 
 if TYPE_CHECKING:
     import xarray as xr
 
+    from mbs.unknowns.looks import Band
 
-def write_points(kind: Kind, description: Description, points: Points, path: str) -> str:
+
+def write_points(
+    kind: Kind, description: Description, points: Points, path: str, bands: Mapping[str, Band] | None = None
+) -> str:
     """Write a result, and return what was written in words.
 
     Parameters
@@ -33,6 +37,8 @@ def write_points(kind: Kind, description: Description, points: Points, path: str
         Points by load, then by speed.
     path : str
         The file: .csv, or netCDF.
+    bands : mapping of str to Band, optional
+        Bands of what is not known of the only point, by the names of variables; netCDF alone has them.
 
     Raises
     ------
@@ -43,6 +49,10 @@ def write_points(kind: Kind, description: Description, points: Points, path: str
     if Path(path).suffix.lower() == ".csv":
         write_csv(kind, dataset, path)
     else:
+        for name, band in (bands or {}).items():
+            from mbs.unknowns.bounds import with_bounds
+
+            dataset = with_bounds(dataset, name, band, (0, 0))
         write_dataset(dataset, Path(path))
     return f"{path}: written"
 

@@ -1,0 +1,109 @@
+"""Bands of one bearing: it is taken as the only bearing of a scene, of which the list of what is open is known."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.units import DAMPER, FILM, PRESSURE, SPRING
+from mbs.output.band_text import Quantity, about_lines, lost_lines, quantity_lines
+from mbs.output.one_bearing.kind import Description, Kind, row_of
+from mbs.scene.scene import Scene
+from mbs.scene.specs import BearingSpec, LocatingSpec
+from mbs.unknowns.held_open import held_open
+from mbs.unknowns.looks import Band
+from mbs.unknowns.of_variables import variable_bands
+
+NAME = "bearing"
+"""How the bearing is called."""
+
+_MATRICES = (("K", "stiffness", SPRING), ("C", "damping", DAMPER))
+_CONTACTS = (("pressure", "hertz_pressure", PRESSURE, np.argmax), ("film", "minimum_film", FILM, np.nanargmin))
+
+
+def scene_of(spec: BearingSpec | LocatingSpec, oil: Lubricant, temperature: float) -> Scene:
+    """A scene of a bearing alone, to ask what is not known of it; it has no bodies.
+
+    Parameters
+    ----------
+    spec : BearingSpec or LocatingSpec
+        The bearing.
+    oil : Lubricant
+        Its oil.
+    temperature : float
+        Temperature of its raceways [K].
+    """
+    return Scene(name=NAME, speed=0.0, temperature=temperature, lubricant=oil, bodies=(), elements=(spec,))
+
+
+def turned(direction: tuple[float, float], angle: float) -> tuple[float, float]:
+    """Direction of a load as a cage sees it that starts at an angle [rad].
+
+    Examples
+    --------
+    >>> [round(part, 3) for part in turned((1.0, 0.0), math.pi / 2.0)]
+    [0.0, -1.0]
+    """
+    c, s = math.cos(angle), math.sin(angle)
+    return c * direction[0] + s * direction[1], c * direction[1] - s * direction[0]
+
+
+def point_bands(
+    kind: Kind, description: Description, point: Any, scene: Scene, again: Callable[[Scene], tuple[Description, Any]]
+) -> dict[str, Band]:
+    """Bands of the numbers of a point.
+
+    Parameters
+    ----------
+    kind : Kind
+        Kind of the bearing.
+    description : Description
+        What is told of it.
+    point : object
+        The point.
+    scene : Scene
+        The bearing as a scene.
+    again : callable
+        Gives description and point of a changed scene.
+    """
+
+    def numbers(told: Description, found: Any) -> dict[str, FloatArray]:
+        row = row_of(kind, told, found)
+        names = [f"{name}_{way}" for _, name, _ in _MATRICES for way in ("along", "across", "axial")]
+        names += [name for _, name, _, _ in _CONTACTS] + ["central_film", "highest_raceway_load"]
+        return {name: np.asarray(row[name], dtype=np.float64) for name in names if name in row}
+
+    centre = numbers(description, point)
+    return variable_bands(lambda changed, _: numbers(*again(changed)), centre, held_open(scene))
+
+
+def point_lines(bands: dict[str, Band], scene: Scene) -> list[str]:
+    """Table of the bands of one point, and what they hold.
+
+    Parameters
+    ----------
+    bands : dict of str to Band
+        What `point_bands` finds.
+    scene : Scene
+        The bearing as a scene.
+    """
+    some = next(iter(bands.values()))
+    refused = [line for line in lost_lines(some.of(None), [""]) if "not in the bands" in line]
+    return [*quantity_lines(list(_quantities(bands))), *refused, *about_lines(scene)]
+
+
+def _quantities(bands: dict[str, Band]) -> Iterator[Quantity]:
+    """K and C, pressure and film of the worse contact, and the highest load."""
+    for letter, name, shown in _MATRICES:
+        for way in ("along", "across", "axial"):
+            if (found := bands.get(f"{name}_{way}")) is not None:
+                yield Quantity("", f"{letter} {way}", shown.unit, found.scaled(shown.factor))
+    for words, name, shown, worst in _CONTACTS:
+        if name in bands and np.isfinite(bands[name].value).any():
+            yield Quantity("", words, shown.unit, bands[name].of(int(worst(bands[name].value))).scaled(shown.factor))
+    yield Quantity("", "highest load", "N", bands["highest_raceway_load"])

@@ -1,0 +1,151 @@
+"""Bands of the peaks of frequency responses: each look follows the mode of a peak, and reads the response there.
+
+Heights are in dB, for what is not known of damping multiplies them.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray, IntArray
+from mbs.linearised.linear import frequency_response, peak_places
+from mbs.linearised.modes import Modes, modes
+from mbs.model.equilibrium import Equilibrium
+from mbs.scene.assembly import Model
+from mbs.scene.scene import Scene
+from mbs.unknowns.held_open import held_open
+from mbs.unknowns.looks import Band, band
+from mbs.unknowns.of_modes import ModeLook, banded, looked_at
+
+_BESIDE = np.linspace(-2.0, 2.0, 9)
+"""Places beside a mode at which its peak is sought, in half-widths of it."""
+
+_WIDE = 3.0
+"""Distance of a peak from its mode in half-widths, at most, or `_NEAR`."""
+
+_NEAR = 0.005
+"""The same as a part of the frequency."""
+
+_LEAST = 1e-300
+
+
+@dataclass(frozen=True, eq=False)
+class PeakBands:
+    """Bands of the peaks of responses.
+
+    Attributes
+    ----------
+    places : array of int, shape (peaks, 3)
+        Frequency, sensor and input of each.
+    frequency, level : Band
+        Bands of the frequencies [Hz] and of the levels [dB re 1 of the unit of the response], shape (peaks,) each.
+    """
+
+    places: IntArray
+    frequency: Band
+    level: Band
+
+    def place(self, frequency: int, sensor: int, entry: int) -> int | None:
+        """Place of a peak among those that have bands; None for one that has none."""
+        found = np.flatnonzero(np.all(self.places == (frequency, sensor, entry), axis=1))
+        return int(found[0]) if found.size else None
+
+
+def peak_bands(
+    model: Model,
+    balance: Equilibrium,
+    found: Modes,
+    frequencies: FloatArray,
+    sizes: FloatArray,
+    errors: FloatArray | None,
+) -> PeakBands:
+    """Bands of the peaks of the responses of a model that belong to one of its modes.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law.
+    balance : Equilibrium
+        Equilibrium at which it was linearised.
+    found : Modes
+        Its modes there.
+    frequencies : array, shape (frequencies,)
+        [Hz].
+    sizes : array, shape (frequencies, sensors, inputs)
+        Sizes of the responses.
+    errors : array of the same shape, or None
+        What numerics leave open of their levels [dB].
+    """
+    chosen = banded(found, float(frequencies[-1]))
+    places, own = _peaks(found, chosen, frequencies, sizes)
+    look = _PeakLook(ModeLook(model, balance, found, chosen[own]), places[:, 1:])
+    at = places[:, 0], places[:, 1], places[:, 2]
+    values = np.array([frequencies[places[:, 0]], _level(sizes[at])])
+    numerics = np.zeros_like(values)
+    if found.bands is not None:
+        numerics[0] = found.bands.frequency[chosen[own]]
+    if errors is not None:
+        numerics[1] = errors[at]
+    # Looks read the response beside the mode alone: what that misses of the printed peak is in all of them alike.
+    missed = values - look.values(balance, found)
+    both = band(lambda scene, standing: look(scene, standing) + missed, values, held_open(model.scene), numerics)
+    level = dataclasses.replace(both.of(1), signed=np.ones(places.shape[0], dtype=np.bool_))
+    return PeakBands(places, both.of(0), level)
+
+
+@dataclass(frozen=True, eq=False)
+class _PeakLook:
+    """Frequency and level of the peak of each mode in a response, shape (2, peaks).
+
+    Attributes
+    ----------
+    modes : ModeLook
+        The mode of each peak; one mode may have several.
+    of : array of int, shape (peaks, 2)
+        Sensor and input of each.
+    """
+
+    modes: ModeLook
+    of: IntArray
+
+    def __call__(self, scene: Scene, standing: bool) -> FloatArray:
+        """Look at a changed scene."""
+        balance = looked_at(self.modes.model.again(scene), self.modes.balance, standing)
+        return self.values(balance, modes(balance))
+
+    def values(self, balance: Equilibrium, found: Modes) -> FloatArray:
+        """Peaks of the modes of a system."""
+        frequency, ratio = self.modes.paired(balance, found)
+        there = np.isfinite(frequency)
+        beside = frequency[:, None] * (1.0 + ratio[:, None] * _BESIDE)
+        values = np.full((2, frequency.size), np.nan)
+        if not there.any():
+            return values
+        scene = self.modes.model.scene
+        response = np.abs(frequency_response(balance, scene.inputs, scene.sensors, beside[there].reshape(-1)))
+        for row, k in enumerate(np.flatnonzero(there)):
+            sizes = response[row * _BESIDE.size : (row + 1) * _BESIDE.size, self.of[k, 0], self.of[k, 1]]
+            highest = int(np.argmax(sizes))
+            values[:, k] = beside[k, highest], _level(sizes[highest])
+        return values
+
+
+def _peaks(found: Modes, chosen: IntArray, frequencies: FloatArray, sizes: FloatArray) -> tuple[IntArray, IntArray]:
+    """Peaks that belong to a mode, shape (peaks, 3), and the place of its mode among the chosen ones."""
+    places, own = [], []
+    frequency, ratio = found.frequency[chosen], found.damping_ratio[chosen]
+    for sensor, entry in np.ndindex(sizes.shape[1:]):
+        for k in peak_places(sizes[:, sensor, entry]).tolist():
+            apart = np.abs(frequency / frequencies[k] - 1.0)
+            if apart.size and apart.min() <= max(_WIDE * ratio[int(np.argmin(apart))], _NEAR):
+                places.append((k, sensor, entry))
+                own.append(int(np.argmin(apart)))
+    return np.array(places, dtype=np.int64).reshape(-1, 3), np.array(own, dtype=np.int64)
+
+
+def _level(size: FloatArray) -> FloatArray:
+    """Level of a size [dB]."""
+    return np.asarray(20.0 * np.log10(np.maximum(size, _LEAST)))
