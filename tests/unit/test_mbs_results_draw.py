@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -115,12 +113,3 @@ def test_a_report_is_a_page(tmp_path, model):
     (tmp_path / "other.html").write_text("mine")
     with pytest.raises(InputError, match=r"other\.html"):
         mbs.write_report(model, tmp_path / "other.html")
-
-
-def test_results_load_no_figures_before_they_are_asked_for():
-    code = (
-        "import sys; from mbs import assemble, read_scene, modes; modes(assemble(read_scene('nu308_rigid'))).dataset; "
-        "print([m for m in sys.modules if m.startswith('matplotlib')])"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"

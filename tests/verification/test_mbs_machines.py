@@ -24,6 +24,7 @@ from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.scene.assembly import assemble, build_body
+from mbs.scene.changes import with_slices
 from mbs.scene.reader import read_scene
 from mbs.settings import Settings
 from mbs.spectral.campbell import run_up_spectra
@@ -48,10 +49,11 @@ def with_load(scene, factor):
 
 @pytest.fixture(scope="module")
 def films(emap):
-    """Sweeps of the gearbox with films, by clearance; shifts are summed over the steps of those with clearance."""
+    """Sweeps of the gearbox with films, by clearance; shifts are summed over the steps of the one with clearance."""
+    scene = with_slices(read_scene("gearbox"), 9)
     return {
-        clearance: sweep(assemble(read_scene("gearbox"), "map", emap, clearance).system, np.linspace(FROM, TO, points))
-        for clearance, points in ((0.0, 4), (20e-6, 11), (40e-6, 11))
+        clearance: sweep(assemble(scene, "map", emap, clearance).system, np.linspace(FROM, TO, points))
+        for clearance, points in ((0.0, 4), (40e-6, 11))
     }
 
 
@@ -82,9 +84,8 @@ class TestGearbox:
         moved = result.damped.frequency[-1] / result.damped.frequency[0] - 1.0
         assert np.max(np.abs(moved[shown])) < 1e-3
 
-    @pytest.mark.parametrize("clearance", [20e-6, 40e-6])
-    def test_modes_move_as_the_energy_in_the_bearings_says(self, films, clearance):
-        result = films[clearance].undamped
+    def test_modes_move_as_the_energy_in_the_bearings_says(self, films):
+        result = films[40e-6].undamped
         moved = np.abs(result.shift[-1]) > 2e-3
         assert np.count_nonzero(moved & (result.bearing_share[0] > 0.3)) >= 6
         # the sum over ten steps leaves their squares
@@ -104,7 +105,7 @@ class TestGearbox:
         assert np.all(rising > 0.0)
 
     def test_run_up_peaks_where_the_linear_sweep_has_modes(self, emap):
-        model = assemble(self.scene, "map", emap)
+        model = assemble(with_slices(self.scene, 5), "map", emap)
         # Orders 42 and 63 pass modes between 1.1 and 1.7 kHz in this part of the run-up, as slowly as in the whole one.
         begin, end, duration, step = 1500.0 * RPM, 1800.0 * RPM, 0.75, 20e-6
         speed = SpeedProfile.ramp(begin, end, duration)
