@@ -1,7 +1,6 @@
 """Batch files: what is read, what is refused, what becomes of members that fail, and of a run that goes on."""
 
 import csv
-import importlib
 from pathlib import Path
 
 import numpy as np
@@ -261,20 +260,3 @@ def test_what_ends_all_maps_is_no_failure_of_each(tmp_path, monkeypatch, error):
     monkeypatch.setattr(batch_generate, "generate", dying)
     with pytest.raises(type(error), match=str(error)):
         generate_batch(read(batch_text(SMALL_LISTS)), tmp_path / "maps", workers=1)
-
-
-def _dies_on_import(item):
-    raise AssertionError
-
-
-class Missing:
-    """What a worker process cannot unpickle."""
-
-    def __reduce__(self):
-        return importlib.import_module, ("no_such_library",)
-
-
-@pytest.mark.slow
-def test_pieces_whose_processes_die_at_once_are_the_end():
-    with pytest.raises(WorkerError, match=r"before they do anything .*no_such_library"):
-        list(batch_generate._each(_dies_on_import, [Missing(), Missing(), Missing()], 2))

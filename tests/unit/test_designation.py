@@ -19,7 +19,6 @@ from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
 from ehdmaps.physics.own_oil import _LIMITS, _QUADRATICS, CLASSES, viscosity_100, viscosity_index
 from mbs.cli import main as mbs_main
-from tests.cases.reports import without_budget
 
 SMALL = """
 [bearing]
@@ -241,12 +240,8 @@ def test_the_first_commands_of_a_user(folder, monkeypatch, capsys):
     "words",
     [
         "show|job.nc",
-        "plot|job.nc",
-        "report|job.nc",
-        "export|job.nc",
         "compare|job.nc|job.nc",
         "check|--bearing|NJ2207|--oil|ISO VG 150, VI 140",
-        "show|--bearing|NJ2207|--oil|ISO VG 150, VI 140",
         "export|--bearing|NJ2207|--oil|VG150|-o|own.csv",
     ],
 )
@@ -265,30 +260,14 @@ def test_the_length_of_a_roller_needs_finite_elements_that_are_not_shipped(folde
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "words",
-    [
-        "statics|scene.toml|--law|table",
-        "modes|scene.toml|--law|table",
-        "lsa|scene.toml|--law|table",
-        "sweep|scene.toml|--law|table|--speed|500 rpm|1000 rpm|3",
-        "critical|scene.toml|--law|table|--speed|500 rpm|1000 rpm|3",
-        "runup|scene.toml|--law|table|-o|run.nc",
-        "campbell|scene.toml|--law|table",
-        "report|scene.toml|--law|table",
-        "plan|scene.toml|-o|plan.toml",
-    ],
-)
-def test_every_command_of_mbs(words, folder, monkeypatch):
+@pytest.mark.parametrize("words", ["statics|scene.toml|--law|table", "plan|scene.toml|-o|plan.toml"])
+def test_scenes_have_designations(words, folder, monkeypatch):
     from importlib import resources
 
     monkeypatch.chdir(folder)
-    without_budget(monkeypatch)
     text = (resources.files("mbs") / "systems" / "nu308_rigid.toml").read_text()
     text = text.replace('{ name = "NU308", diametral_clearance = "0 um" }', '"NU 2210 ECP"').replace(
         'name = "FVA3" ', 'name = "ISO VG 68"'
     )
-    for old, new in (('"0.2 s"', '"0.06 s"'), ("slices = 41", "slices = 5"), ("points = 2000", "points = 50")):
-        text = text.replace(old, new)
-    (folder / "scene.toml").write_text(text)
+    (folder / "scene.toml").write_text(text.replace("slices = 41", "slices = 5"))
     run(mbs_main, words)

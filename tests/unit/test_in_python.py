@@ -12,16 +12,12 @@ from ehdmaps.ehl.dense import factorised, solved
 
 BEARING = ("bearing", "NU308", "--load", "5 kN", "--speed", "500 rpm", "--slices", "5", "--law")
 COMMANDS = (
-    (*BEARING, "hertz"),
     (*BEARING, "map", "--map", "MAP"),
     ("statics", "nu308_rigid", "--law", "hertz:1.25e-5 s"),
-    ("modes", "nu308_rigid", "--law", "map", "--map", "MAP"),
-    ("bearing", "NU308", "--load", "5 kN", "--speed", "1500 rpm"),
     ("bearing", "6208", "--load", "2 kN", "--speed", "1500 rpm"),
     ("bearing", "32208", "--load", "2 kN", "--axial", "1 kN", "--speed", "1500 rpm"),
     ("lsa", "spindle"),
     ("sweep", "nu308_rigid", "--speed", "500 rpm", "900 rpm", "2"),
-    ("critical", "nu308_rigid", "--speed", "500 rpm", "900 rpm", "2"),
 )
 """Kinds of bearings and of commands, with films of maps and of the film table; runs in time load nothing more."""
 

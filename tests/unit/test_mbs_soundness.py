@@ -15,7 +15,6 @@ from mbs.analyses.sweep import SweepSettings
 from mbs.model.findings import Cause, Finding
 from mbs.scene.changes import with_loads
 from mbs.settings import SweepRange
-from tests.cases.commands import run
 
 SCENE = "nu308_rigid"
 TEXT = (resources.files("mbs") / "systems" / f"{SCENE}.toml").read_text(encoding="utf-8")
@@ -61,20 +60,6 @@ def test_a_run_under_a_load_that_no_contact_carries():
     found = runup(crushed, course)
     assert Cause.PRESSURE in [entry.cause for entry in found.findings] and found.steps is None
     assert "unsound" in found.dataset.attrs
-
-
-@pytest.mark.slow
-def test_the_first_line_says_it_and_the_status_is_1(tmp_path, capsys):
-    path = tmp_path / "crushed.toml"
-    crushed = TEXT.replace('"100 N", "100 N"', '"1e6 N", "0 N"')
-    path.write_text(crushed.replace('duration = "0.2 s"', 'duration = "1 ms"'))
-    speeds = ["--speed", "300 rpm", "600 rpm", "2"]
-    for command in (["statics"], ["modes"], ["lsa"], ["sweep", *speeds], ["critical", *speeds], ["runup"]):
-        status, out, _ = run(capsys, command[0], str(path), *command[1:])
-        assert status == 1, command
-        assert out.startswith("error: the figures below mean nothing: bearing_left: Hertz pressure of "), command
-    status, out, _ = run(capsys, "statics", SCENE)
-    assert status == 0 and "mean nothing" not in out
 
 
 def test_words_of_several_cases_have_their_label():
