@@ -90,12 +90,12 @@ def test_points_of_the_map_are_all_that_the_dear_solver_is_asked_for():
     assert sum(task.points for task in planned_tasks(JOB, Dear())) == JOB.points
 
 
-def test_without_lines_where_they_are_declined_or_films_know_heat(tmp_path):
-    for more in ('backbone = "none"', 'physics = "thermal"'):
-        job = parse_job(f"{TEXT}{more}\n".replace("points = 5", "points = 2"), "a", "a")
-        generated = generate(replace(job, temperatures=job.temperatures[:1]), tmp_path / "b.nc", 1, True, solver=Dear())
-        assert generated.backbone is None
-        assert set(SPACING_ERRORS) <= set(generated.dataset.variables)
+@pytest.mark.parametrize("more", ['backbone = "none"', pytest.param('physics = "thermal"', marks=pytest.mark.slow)])
+def test_without_lines_where_they_are_declined_or_films_know_heat(tmp_path, more):
+    job = parse_job(f"{TEXT}{more}\n".replace("points = 5", "points = 2"), "a", "a")
+    generated = generate(replace(job, temperatures=job.temperatures[:1]), tmp_path / "b.nc", 1, True, solver=Dear())
+    assert generated.backbone is None
+    assert set(SPACING_ERRORS) <= set(generated.dataset.variables)
 
 
 def test_too_few_solutions_make_no_lines(tmp_path):
