@@ -18,6 +18,7 @@ from ehdmaps.errors import InputError, closest, label_problem, short
 from ehdmaps.physics.isotherm import FreeVolume, Isotherm, IsothermLaw, PressureViscosity, density
 from ehdmaps.physics.own_oil import (
     CLASSES,
+    CONDUCTIVITY,
     CORRELATIONS,
     DENSITY,
     DENSITY_SLOPE,
@@ -635,6 +636,7 @@ def _of_class(oil_class: OilClass) -> Lubricant:
         density=DENSITY,
         density_slope=DENSITY_SLOPE,
         pressure_viscosity=oil_class.correlation,
+        thermal_conductivity=CONDUCTIVITY,
         name=oil_class.name,
     )
 

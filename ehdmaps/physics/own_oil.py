@@ -554,6 +554,9 @@ INDICES = (0.0, 400.0)
 DENSITY, DENSITY_SLOPE = 880.0, -0.6
 """Density at 15 degC [kg/m3] and its slope [kg/(m3 K)], assumed: mineral oils have 850 to 910."""
 
+CONDUCTIVITY = 0.13
+"""Thermal conductivity [W/(m K)], assumed: mineral oils have 0.12 to 0.15."""
+
 LEAST = 2.0
 """Viscosity at 100 degC [mm2/s] from which ISO 2909 has an index."""
 

@@ -21,6 +21,7 @@ from ehdmaps.physics.hertz import LARGEST_PRESSURE
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.point.film_formulas import point_groups
+from ehdmaps.physics.point.inlet_heat import WARM, heated_point, point_heats
 from ehdmaps.physics.solution import UNKNOWN, Estimate, Status
 from ehdmaps.physics.spectrum import checked_frequencies
 from ehdmaps.point.problem import PointProblem
@@ -346,4 +347,40 @@ def _in_si(
         response=response,
         field=PointField(half * grid.x, half * grid.y, peak * groups.fine.pressure, film * groups.fine.film),
         groups=groups,
+    )
+
+
+def heated_solution(solution: PointSolution, lubricant: Lubricant) -> PointSolution:
+    """A point contact with heat in its inlet, by the rule; one without a film stays what it is.
+
+    Its fields, and its response over frequency, are those of the isothermal film, and are left out.
+
+    Parameters
+    ----------
+    solution : PointSolution
+        The isothermal film.
+    lubricant : Lubricant
+        The oil, whose conductivity has to be known.
+
+    Raises
+    ------
+    InputError
+        Without the conductivity of the oil.
+    """
+    if not solution.status.usable or solution.entrainment_speed == 0.0:
+        return solution
+    at = (np.array([x]) for x in (solution.load, solution.entrainment_speed, solution.temperature))
+    heat = point_heats(solution.ellipse, lubricant, *at)
+    cold: dict[str, float] = {}
+    for name in WARM:
+        number: Estimate = getattr(solution, name)
+        cold |= {name: float(number), f"{name}_error": number.error}
+    warm = heated_point(cold, heat, float(solution.ellipse.stiffness(solution.load)))
+    return dataclasses.replace(
+        solution,
+        reason="; ".join(filter(None, (solution.reason, heat.of(0).note))),
+        response=None,
+        field=None,
+        groups=None,
+        **{name: Estimate(float(warm[name][0]), float(warm[f"{name}_error"][0])) for name in WARM},
     )

@@ -235,9 +235,11 @@ class FilmTable:
             heat = inlet_heats(contact, lubricant, *(x.ravel()[good] for x in (w, u, T)))
             kept = heat.compliance(numbers["film_compliance"][good], numbers["film_offset"][good])
             numbers["film_compliance"][good] = kept
+            numbers["film_offset"][good] *= heat.offset_factor
             numbers["loss_compliance"][good] *= heat.loss_factor
             for name in THINNED:
                 numbers[name][good] *= heat.factor
+            for name in ("film_offset", *THINNED):
                 errors[name][good] += heat.film_error
             for wrong in (errors["film_compliance"], errors["loss_compliance"], law_error):
                 wrong[good] += heat.loss_error

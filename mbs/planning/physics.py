@@ -188,7 +188,7 @@ def verdicts(scene: Scene, settings: AutoSettings | None = None) -> tuple[Verdic
         *([_memory(carrying, highest, settings, _without_memory(scene))] if highest > 0.0 else []),
         _supply([*carrying, *idle], _stated_supplies(scene, settings.supply), tolerance),
         _roughness(carrying, scene, oil),
-        _heat(carrying, oil, settings.physics, tolerance, served=bool(scene.bearings)),
+        _heat(carrying, oil, settings.physics, tolerance),
         _stress(carrying),
     )
 
@@ -274,13 +274,8 @@ def _roughness(states: Sequence[ClosedContact], scene: Scene, oil: Lubricant) ->
     return Verdict(name, True, max(k, c), words, share < TOUCHING)
 
 
-def _heat(
-    states: Sequence[ClosedContact], oil: Lubricant, asked: str | None, tolerance: float, *, served: bool
-) -> Verdict:
-    """Judge heat in the inlet, which films of the table have by its rule; those of tapered and ribbed rollers not yet.
-
-    `served` says that a scene has cylindrical roller bearings.
-    """
+def _heat(states: Sequence[ClosedContact], oil: Lubricant, asked: str | None, tolerance: float) -> Verdict:
+    """Judge heat in the inlet, which films of the table have by its rule."""
     name = "inlet heat"
     if oil.thermal_conductivity is None:
         words = f"unknown: no thermal conductivity of {oil.title} is known"
@@ -290,8 +285,6 @@ def _heat(
     refused = next(filter(None, (heat_refused(one, oil) for one in states)), "") if matters else ""
     on = asked == INLET_HEAT if asked else matters and not refused
     words = f"it changes k or c of a contact by {up_to(size)} at {SPEED.text(state.speed)}"
-    if not served:
-        return Verdict(name, False, size, f"{words}; films of tapered and ribbed rollers do not have it yet", matters)
     if refused:
         words += f"; its rule fails where {refused}; --physics {INLET_HEAT} has it elsewhere; "
         words += MAKE_A_MAP.format(key='physics = "thermal"')

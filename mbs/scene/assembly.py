@@ -352,6 +352,7 @@ def assemble(
     clearance: float | None = None,
     films: Films | None = None,
     supply: OilSupply | None = None,
+    inlet_heat: bool = False,
 ) -> Model:
     """Make a system from a scene.
 
@@ -373,6 +374,8 @@ def assemble(
     supply : OilSupply, optional
         Oil supply of all bearings, in place of that of the scene and of its bearings; without either it is that which
         the job of the map states, and flooded where it states none. Laws without films have none.
+    inlet_heat : bool
+        Whether heat in the inlet thins films of the film table, by its rule (`ehdmaps.physics.heat`).
 
     Returns
     -------
@@ -399,11 +402,11 @@ def assemble(
     >>> model.label, model.system.size
     ('film table', 8)
     """
-    chosen, maps = law_in_force(law, _opened(emap), scene)
+    chosen, maps = law_in_force(law, _opened(emap), scene, inlet_heat)
     problems: list[str] = []
     if clearance is not None:
         scene = _with_clearance(scene, clearance, problems)
-    laws = ContactLaws(chosen, scene, maps, films, supply)
+    laws = ContactLaws(chosen, scene, maps, films, supply, inlet_heat)
     wrong_law = laws.problems()
     problems = [*wrong_law, *problems]
     try:

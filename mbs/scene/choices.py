@@ -63,6 +63,8 @@ class LawChoice:
         Which films it is to have.
     supply : OilSupply or None
         Oil supply of all bearings; None for that of the scene, or of the map.
+    inlet_heat : bool
+        Whether heat in the inlet thins films of the film table; the maps of it know it themselves, too.
     """
 
     label: str
@@ -70,6 +72,7 @@ class LawChoice:
     maps: MapSet | None = None
     films: Films | None = None
     supply: OilSupply | None = None
+    inlet_heat: bool = False
 
     @property
     def has_films(self) -> bool:
@@ -108,18 +111,21 @@ class Subject:
         from mbs.scene.assembly import assemble
 
         law = self.law
-        model = assemble(self.scene, law.name, law.maps, self.clearance, law.films, law.supply)
+        model = assemble(self.scene, law.name, law.maps, self.clearance, law.films, law.supply, law.inlet_heat)
         return dataclasses.replace(model, chosen=self.chosen)
 
 
-Concerned = Literal["all", "films", "relaxing", "maps", "oil", "first"]
-"""Whom a choice concerns: all; laws with films of rollers, with films that may relax, or of maps; those for which oil
-has a temperature; the reference."""
+Concerned = Literal["all", "films", "relaxing", "heat", "maps", "oil", "first"]
+"""Whom a choice concerns: all; laws with films of rollers, with films that may relax, of maps or the film table, or of
+maps; those for which oil has a temperature; the reference."""
+
+_NO_MAP = "without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`, or --law table"
 
 LACKS = {
     "films": "without a law that has films; allowed: with --map, --law table or formula",
     "relaxing": "without a law that has films; allowed: with --map, --law table or formula",
-    "maps": "without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`, or --law table",
+    "heat": _NO_MAP,
+    "maps": _NO_MAP,
 }
 """What is said where no law is concerned."""
 
@@ -138,7 +144,7 @@ class SceneChoice(Choice[Subject]):
     ----------
     example : str
         A value that may be varied, for people; empty where it cannot be.
-    concerned : {"all", "films", "relaxing", "maps", "oil", "first"}
+    concerned : {"all", "films", "relaxing", "heat", "maps", "oil", "first"}
         Which of several laws it concerns.
     option : bool
         Whether the commands on scenes have it as an option; else `mbs variants --vary` alone.
@@ -162,6 +168,8 @@ class SceneChoice(Choice[Subject]):
         """Tell whether a subject depends on it."""
         if self.concerned == "maps":
             return subject.law.maps is not None
+        if self.concerned == "heat":
+            return subject.law.maps is not None or subject.law.name == TABLE_LAW
         if self.concerned == "oil":
             # Rings of other temperatures have another clearance.
             return subject.law.has_films or any(entry.changes_in_operation for entry in subject.scene.bearings)
@@ -387,20 +395,27 @@ def _physics() -> tuple[str, str]:
 
 def _with_physics(subject: Subject, physics: str) -> Subject:
     """A subject whose films of the film table have heat in the inlet or not; other laws stay as they are."""
-    maps = subject.law.maps
-    if maps is None:
+    law, maps = subject.law, subject.law.maps
+    if maps is None and law.name != TABLE_LAW:
         return subject
-    if not all(emap.from_table for emap in maps.maps):
+    if maps is not None and not all(emap.from_table for emap in maps.maps):
         raise InputError(
             f"got {physics} with a map, which has the physics that it was made with; allowed: films of the film table; "
             "make the map of a job with this physics in [solver]"
         )
     heat = physics != _physics()[0]
-    if all(emap.inlet_heat == heat for emap in maps.maps):
+    if heat == law.inlet_heat:
         return subject
-    from mbs.scene.map_set import table_maps
+    if heat and subject.scene.lubricant is not None:
+        from ehdmaps.physics.heat import heat_data
+        from ehdmaps.physics.solids import STEEL
 
-    return dataclasses.replace(subject, law=dataclasses.replace(subject.law, maps=table_maps(subject.scene, heat)))
+        heat_data(subject.scene.lubricant, STEEL)
+    if maps is not None:
+        from mbs.scene.map_set import table_maps
+
+        maps = table_maps(subject.scene, heat)
+    return dataclasses.replace(subject, law=dataclasses.replace(law, maps=maps, inlet_heat=heat))
 
 
 def _films_words(kind: str) -> str:
@@ -472,12 +487,12 @@ _ROWS = (
     SceneChoice(
         "physics",
         "NAME",
-        "heat in films of the film table: isothermal | inlet-heat, by the rule of the inlet, of cylindrical rollers",
+        "heat in films of the film table: isothermal | inlet-heat, by the rule of the inlet",
         "isothermal",
         one_of(_physics),
         _with_physics,
         example="inlet-heat",
-        concerned="maps",
+        concerned="heat",
         usual=lambda physics: physics == _physics()[0],
     ),
     SceneChoice(
@@ -694,7 +709,7 @@ def combinations(
             continue
         if choice.concerned in LACKS and not any(choice.concerns(one.subject) for one in found):
             got, scene = ", ".join(map(choice.text, several)), found[0].subject.scene
-            of_others = not scene.bearings and choice.concerned != "relaxing"
+            of_others = not scene.bearings and choice.concerned not in ("relaxing", "heat")
             lacks = LACKS[choice.concerned]
             if of_others and scene.located:
                 lacks = BALLS_LACK if scene.balls else TAPERED_LACK

@@ -136,7 +136,9 @@ NO_LAW = "no contact law"
 _LABELS = {"hertz": "dry Hertz", "formula": "film formula", TABLE_LAW: "film table"}
 
 
-def law_in_force(name: str | None, maps: MapSet | None, scene: Scene) -> tuple[str, MapSet | None]:
+def law_in_force(
+    name: str | None, maps: MapSet | None, scene: Scene, inlet_heat: bool = False
+) -> tuple[str, MapSet | None]:
     """The law that is meant, and its maps: all commands and `mbs.assemble` ask here.
 
     Parameters
@@ -148,6 +150,8 @@ def law_in_force(name: str | None, maps: MapSet | None, scene: Scene) -> tuple[s
         The maps that were given.
     scene : Scene
         Bearings and oil.
+    inlet_heat : bool
+        Whether heat in the inlet thins films of the film table.
 
     Raises
     ------
@@ -158,7 +162,7 @@ def law_in_force(name: str | None, maps: MapSet | None, scene: Scene) -> tuple[s
         has_films = scene.lubricant is not None and scene.has_bearings
         name = "map" if maps is not None else TABLE_LAW if has_films else "hertz"
     if name == TABLE_LAW and maps is None and (scene.bearings or not scene.has_bearings):
-        return "map", table_maps(scene)
+        return "map", table_maps(scene, inlet_heat)
     return name, maps
 
 
@@ -326,6 +330,8 @@ class ContactLaws:
         Which films linear analyses are to have; None for `DEFAULT_FILMS` of `mbs.model.relaxation`, where they can.
     asked_supply : OilSupply or None
         Oil supply of all bearings; None for that of each bearing, of the scene, or of the job of the map.
+    inlet_heat : bool
+        Whether heat in the inlet thins films of the film table.
     """
 
     chosen: str
@@ -333,6 +339,7 @@ class ContactLaws:
     maps: MapSet | None
     asked: Films | None = None
     asked_supply: OilSupply | None = None
+    inlet_heat: bool = False
     _made: dict[tuple[BearingGeometry, OilSupply], BearingLaws] = field(default_factory=dict, repr=False)
 
     def problems(self) -> list[str]:

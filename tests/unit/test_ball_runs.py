@@ -200,7 +200,7 @@ def test_balls_are_in_results_and_pictures():
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("statics", "--physics", "inlet-heat"), "--physics: got inlet-heat with ball bearings alone; allowed: none"),
+        (("statics", "--law", "hertz", "--physics", "inlet-heat"), "--physics: got inlet-heat without a map; allowed"),
         (("modes", "--law", "hertz", "--films", "memory"), "without a law that has films; allowed: with --map, --law"),
         (("statics", "--supply", "5 um"), "with ball bearings alone; allowed: none of it: their films are of one oil"),
     ],

@@ -170,6 +170,11 @@ def test_films_are_in_statics_and_time():
     assert not np.any(without.damping)
     # films of 0.1 um and more in both contacts press the rings apart
     assert abs(with_films.force[0]) > abs(without.force[0])
+    heated = assemble(machine.scene, "table", inlet_heat=True)
+    assert "inlet heat, flooded" in heated.law and "isothermal" not in heated.law
+    warm = heated.balls[0].evaluate(place, still, machine.operation)
+    assert abs(with_films.force[0]) > abs(warm.force[0]) > abs(without.force[0])
+    assert 0.0 < warm.damping[1, 1] < with_films.damping[1, 1]
     in_time, _ = ball.advance(None, place, still, machine.operation)
     np.testing.assert_allclose(in_time.force, with_films.force, rtol=1e-9, atol=1e-9 * abs(with_films.force[0]))
     with pytest.raises(AnalysisError, match=r"'drive': no films at 1e\+07 rpm of the system .*hertz:1.25e-5 s"):

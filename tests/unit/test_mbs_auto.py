@@ -332,10 +332,8 @@ def test_a_scene_that_stands_still_is_judged_at_its_other_speeds():
     assert at_one_speed(still) is still
 
 
-def test_heat_of_tapered_rollers_is_sized_and_not_offered():
-    """Their films have no heat yet: an option that their scenes refuse is not named."""
+def test_heat_of_tapered_rollers_is_sized_and_offered():
     oil = '[lubricant]\nname = "FVA3"\n'
     scene = parse_scene(text(**{**O_PAIR, "more": oil}).replace("500.0 rad/s", "1200 rad/s"), "rotor", "rotor.toml")
     found = {verdict.physics: verdict for verdict in verdicts(scene)}["inlet heat"]
-    assert found.matters and not found.on
-    assert "do not have it yet" in found.words and "--physics" not in found.words
+    assert found.matters and "--physics inlet-heat has it" in found.words

@@ -172,3 +172,11 @@ def test_tapered_rollers_have_films_beside_those_of_balls() -> None:
     )
     machine = assemble(parse_scene(scene, "rotor", "rotor.toml"), "table")
     assert "flooded, films with memory; tapered roller bearings with films from the film table" in machine.law
+    heated = assemble(machine.scene, "table", inlet_heat=True)
+    assert heated.law.count("inlet heat, flooded") == 2
+    tapered = [one for one in machine.on_rings if one not in machine.balls]
+    warm = [one for one in heated.on_rings if one not in heated.balls]
+    place = np.array([30e-6, 0.0, 0.0, 0.0, 0.0, 0.0]) * np.sign(tapered[0].force.geometry.contact_angle or 1.0)
+    cold_force, warm_force = (one.evaluate(place, np.zeros(6), machine.operation) for one in (tapered[0], warm[0]))
+    assert 0.0 < abs(warm_force.force[0]) < abs(cold_force.force[0])
+    assert 0.0 < warm_force.damping[0, 0] < cold_force.damping[0, 0]

@@ -6,8 +6,10 @@ Barus oil whose viscosity falls as exp(-beta T), cold walls, conduction across t
 from __future__ import annotations
 
 import math
+import tomllib
 from collections.abc import Callable
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,7 +22,7 @@ from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.newton import CONVERGED
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.solver import ReynoldsSolver
-from ehdmaps.physics.heat import thermal_loading, viscosity_slope
+from ehdmaps.physics.heat import heat_by_factor, inlet_heat_factor, thermal_loading, viscosity_slope
 from ehdmaps.physics.isotherm import LINEAR, Isotherm
 from tests.cases.laws import CONTACTS, OIL
 
@@ -161,3 +163,33 @@ def test_wilson_and_sheu(load: float, speed: float, celsius: float) -> None:
         for physics in ("thermal", "isothermal")
     )
     assert warm / cold == pytest.approx(1.0 / (1.0 + 0.241 * loading**0.64), abs=0.02)
+
+
+class TestRule:
+    """The rule of inlet heat against films with temperatures that it was not made from."""
+
+    REFERENCES = Path(__file__).parents[1] / "references"
+
+    def test_lines_of_an_oil_that_it_has_not_seen(self):
+        """FVA 3 of `tests.benchmarks.warm_lines`, by the thermal line solver: 1.5 % of films from M = 2 on, 3 % of
+        offsets, 3.5 % of both below; the loss is good to 8 % up to QL = 1.5, all to what the rule states."""
+        lines = tomllib.loads((self.REFERENCES / "warm_lines.toml").read_text(encoding="utf-8"))["lines"]
+        kept = [line for line in lines if line["oil"] == "FVA3"]
+        assert len(kept) > 30
+        M, QL, film, offset, loss, fall = (
+            np.array([line[name] for line in kept])
+            for name in ("M", "QL", "central_film", "film_offset", "loss_compliance", "fall")
+        )
+        one, no = np.ones(M.size), np.zeros(M.size, dtype=bool)
+        heat = heat_by_factor(M, inlet_heat_factor(M, QL), one, no, no)
+        loaded, slow = M >= 2.0, QL <= 1.5
+        for factor, truth, bound in ((heat.factor, film, 0.015), (heat.offset_factor, offset, 0.03)):
+            wrong = np.abs(factor / truth - 1.0)
+            assert np.max(wrong[loaded]) < bound and np.max(wrong) < 0.035
+            assert np.all(wrong < heat.film_error)
+        wrong = np.abs(heat.loss_factor / loss - 1.0)
+        assert np.max(wrong[loaded & slow]) < 0.08
+        assert np.all(wrong[loaded] < heat.loss_error[loaded])
+        compliance = np.array([line["film_compliance"] for line in kept])
+        wrong = np.abs(heat.compliance(fall, one) / fall / compliance - 1.0)
+        assert np.all(wrong[loaded] < heat.loss_error[loaded])

@@ -18,15 +18,17 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs.solve.options import option_reader
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.physics.contact import OIL_TEMPERATURES
+from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, heat_data
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.point.ellipse import Ellipse
-from ehdmaps.physics.point.film_formulas import POINT_FILMS
+from ehdmaps.physics.point.film_formulas import point_films
+from ehdmaps.physics.point.inlet_heat import heat_note
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import Estimate, Status
 from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, MOST_FREQUENCIES
-from ehdmaps.point.solver import PointResponse, PointSolution, solve
+from ehdmaps.point.solver import PointResponse, PointSolution, heated_solution, solve
 from ehdmaps.program import tell
 from ehdmaps.units import DAMPER, FILM, LENGTH, PRESSURE, RPM, SPEED, SPRING, TEMPERATURE, Display, short
 
@@ -57,13 +59,13 @@ REYNOLDS, OPENFOAM = "reynolds", "openfoam"
 """What solves them."""
 
 _FASTEST = 1e6 * math.pi / 30.0
-_OF_LINES = (*("length", "shear_stress", "slide_to_roll", "limiting_ratio", "supply", "physics", "shear"),)
+_OF_LINES = (*("length", "shear_stress", "slide_to_roll", "limiting_ratio", "supply", "shear"),)
 """Options of line contacts."""
 
 
 @dataclass(frozen=True)
 class _Request:
-    """Question: bearing, oil, load of a ball [N], speed [m/s], temperature [K], frequencies [Hz], films, picture.
+    """Question: bearing, oil, load of a ball [N], speed [m/s], temperature [K], frequencies [Hz], films, heat, picture.
 
     `cfd` is what solves them by OpenFOAM; None by `reynolds`.
     """
@@ -75,6 +77,7 @@ class _Request:
     temperature: float
     frequencies: FloatArray | None
     films: str
+    inlet_heat: bool
     plot: Path | None
     cfd: CfdPoints | None
 
@@ -97,7 +100,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
         plot_points(solutions, _heading(request), request.plot)
         tell(f"{request.plot}: written")
-    text = _json(solutions) if arguments.json else _table(request, solutions)
+    text = _json(solutions, request.inlet_heat) if arguments.json else _table(request, solutions)
     return text, 0 if all(solution.status.usable for solution in solutions.values()) else 1
 
 
@@ -110,8 +113,9 @@ def _contact(request: _Request, name: str, ellipse: Ellipse) -> PointSolution:
             tell(said)
         return solution
     if request.films == TABLE:
-        return read_point(ellipse, *point, request.frequencies)
-    return solve(ellipse, *point, request.frequencies)
+        return read_point(ellipse, *point, request.frequencies, request.inlet_heat)
+    solution = solve(ellipse, *point, request.frequencies)
+    return heated_solution(solution, request.oil) if request.inlet_heat else solution
 
 
 def read_point(
@@ -121,6 +125,7 @@ def read_point(
     speed: float,
     temperature: float,
     frequencies: FloatArray | None = None,
+    inlet_heat: bool = False,
 ) -> PointSolution:
     """A point as the table of points has it, with the words of a solution.
 
@@ -134,6 +139,8 @@ def read_point(
         F [N], u [m/s], T [K].
     frequencies : ndarray, optional
         Frequencies of the response [Hz].
+    inlet_heat : bool
+        Whether heat in the inlet thins the films, by its rule.
 
     Raises
     ------
@@ -145,7 +152,7 @@ def read_point(
     from ehdmaps.table.points.response import read_response
 
     seconds = stopwatch()
-    films = shipped_point_table().films(ellipse, oil, [load], speed, temperature)
+    films = shipped_point_table().films(ellipse, oil, [load], speed, temperature, inlet_heat)
     numbers = {name: Estimate(float(getattr(films, name)[0]), float(films.errors[name][0])) for name in KNOWN}
     response = None
     if frequencies is not None and films.usable[0]:
@@ -158,9 +165,10 @@ def read_point(
             )
         dynamic = found.stiffness + 2j * math.pi * frequencies * found.damping
         response = PointResponse(frequencies, dynamic, found.stiffness_error, found.damping_error)
+    note = heat_note(ellipse, oil, load, speed, temperature) if inlet_heat and films.usable[0] else ""
     return PointSolution(
         Status(int(films.status[0])),
-        str(films.reason[0]),
+        "; ".join(filter(None, (str(films.reason[0]), note))),
         *(load, speed, temperature, ellipse, float(films.load_number[0]), float(films.oil_number[0])),
         **numbers,  # type: ignore[arg-type]
         solve_seconds=seconds(),
@@ -217,6 +225,7 @@ def _read(arguments: argparse.Namespace) -> _Request:
     if films == TABLE and arguments.plot is not None:
         problems.append(f"--plot: stands beside --films {TABLE}, which has no field; allowed: --films {SOLVED}")
     problems += output_problems([Output("--plot", arguments.plot, FIGURE)])
+    physics = _physics(arguments, oil, problems)
     cfd = None
     if by_cfd:
         from ehdmaps.jobs.solve.cfd_points import cfd_points
@@ -233,7 +242,34 @@ def _read(arguments: argparse.Namespace) -> _Request:
     if problems or bearing is None or oil is None:
         raise InputError(problems)
     plot = None if arguments.plot is None else Path(arguments.plot)
-    return _Request(bearing, oil, load, speed, temperature, frequencies, films, plot, cfd)
+    heat = physics == INLET_HEAT
+    return _Request(bearing, oil, load, speed, temperature, frequencies, films, heat, plot, cfd)
+
+
+def _physics(arguments: argparse.Namespace, oil: Lubricant | None, problems: list[str]) -> str:
+    """Physics of the films by --physics: isothermal, or with heat in the inlet."""
+    physics = getattr(arguments, "physics", None) or ISOTHERMAL
+    if physics not in (ISOTHERMAL, INLET_HEAT):
+        problems.append(
+            f"--physics: got {short(physics)}; allowed for the balls of a bearing: {ISOTHERMAL}, {INLET_HEAT}"
+        )
+    if physics != INLET_HEAT:
+        return physics
+    beside = {
+        "plot": "pressures and films in plan view are isothermal",
+        "frequency": f"solved films over frequency are isothermal; --films {TABLE} has it",
+    }
+    for name, why in beside.items():
+        if getattr(arguments, name) is not None and not (name == "frequency" and arguments.films == TABLE):
+            problems.append(f"--physics: got {physics} beside --{name}; {why}; leave one of the two out")
+    if arguments.solver == OPENFOAM:
+        problems.append(f"--physics: got {physics} beside --solver {OPENFOAM}; allowed: --solver {REYNOLDS}")
+    if oil is not None:
+        try:
+            heat_data(oil, STEEL)
+        except InputError as error:
+            problems.extend(f"--physics: {problem}" for problem in error.problems)
+    return physics
 
 
 def _of_the_other_solver(arguments: argparse.Namespace, by_cfd: bool) -> list[str]:
@@ -271,15 +307,16 @@ def _heading(request: _Request) -> str:
     """Bearing, oil and point in words."""
     by = "" if request.cfd is None else ", OpenFOAM"
     place = f"{FORCE.text(request.load)} a ball, {SPEED.text(request.speed)}, {TEMPERATURE.text(request.temperature)}"
-    return f"{request.bearing.title}, {request.oil.title}{by}, {POINT_FILMS}: {place}"
+    return f"{request.bearing.title}, {request.oil.title}{by}, {point_films(request.inlet_heat)}: {place}"
 
 
-def _json(solutions: dict[str, PointSolution]) -> str:
+def _json(solutions: dict[str, PointSolution], inlet_heat: bool) -> str:
     """One object a contact, SI."""
-    return json.dumps([_record(name, solution) for name, solution in solutions.items()], indent=2, allow_nan=False)
+    records = [_record(name, solution, inlet_heat) for name, solution in solutions.items()]
+    return json.dumps(records, indent=2, allow_nan=False)
 
 
-def _record(name: str, solution: PointSolution) -> dict[str, Any]:
+def _record(name: str, solution: PointSolution, inlet_heat: bool) -> dict[str, Any]:
     """Plain values of a contact; None where there is no number."""
     a, b = solution.ellipse.semi_axes(solution.load)
     values: dict[str, Any] = {
@@ -296,7 +333,7 @@ def _record(name: str, solution: PointSolution) -> dict[str, Any]:
         "steps": solution.steps,
         "solve_seconds": solution.solve_seconds,
         "viscosity_extrapolated": solution.viscosity_extrapolated,
-        "films": POINT_FILMS,
+        "films": point_films(inlet_heat),
         "status": solution.status.word,
         "reason": solution.reason,
     }

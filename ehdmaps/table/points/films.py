@@ -1,8 +1,8 @@
 """Films of point contacts in SI, read from the table: each point with a status, and numbers with errors or none.
 
 The family: flooded, smooth, isothermal films of pure rolling along the short axis of the ellipse, of an oil whose
-density goes after Dowson and Higginson. Stiffness is that of the dry contact and the slope of the film offset,
-1/k = 1/k_dry - dh/dF; loss compliance is c/k^2.
+density goes after Dowson and Higginson; with heat in the inlet by its rule, where that is asked for. Stiffness is that
+of the dry contact and the slope of the film offset, 1/k = 1/k_dry - dh/dF; loss compliance is c/k^2.
 """
 
 from __future__ import annotations
@@ -144,6 +144,7 @@ class PointTable:
         load: npt.ArrayLike,
         entrainment_speed: npt.ArrayLike,
         temperature: npt.ArrayLike,
+        inlet_heat: bool = False,
     ) -> PointFilms:
         """Films at points.
 
@@ -155,6 +156,14 @@ class PointTable:
             The oil.
         load, entrainment_speed, temperature : float or ndarray
             F [N] >= 0, u [m/s] >= 0 and T [K] > 0; they are broadcast. Other numbers have a status that says so.
+        inlet_heat : bool
+            Whether heat in the inlet thins them, by its rule (`ehdmaps.physics.point.inlet_heat`), whose errors are
+            added; status, M and L are those of the isothermal film.
+
+        Raises
+        ------
+        InputError
+            For heat of an oil whose conductivity is not known.
         """
         given = (np.asarray(x, dtype=float) for x in (load, entrainment_speed, temperature))
         F, u, T = (x.ravel() for x in np.broadcast_arrays(*given))
@@ -189,6 +198,12 @@ class PointTable:
         cause[good] = np.select([test for test, _ in tests], [code for _, code in tests], _NONE)
         status = np.where(cause > _DRY, int(Status.OUTSIDE_VALIDITY), int(Status.CONVERGED)).astype(np.int8)
         status[(cause > _NONE) & (cause <= _DRY)] = int(Status.ASYMPTOTE)
+        if inlet_heat:
+            from ehdmaps.physics.point.inlet_heat import point_heats  # with what only heat needs
+            from ehdmaps.table.points.heat import heated_films
+
+            heat = point_heats(ellipse, lubricant, F[good], u[good], T[good])
+            found |= heated_films(found, heat, np.asarray(ellipse.stiffness(F[good])))
         count, whole = len(NATURAL_FREQUENCIES), {}
         for name, values in found.items():
             place = np.full((F.size, *values.shape[1:]), np.nan)

@@ -205,6 +205,7 @@ def ball_films(
     *,
     table: bool = True,
     solves: bool = True,
+    inlet_heat: bool = False,
 ) -> BallFilms:
     """Films of both contacts over load.
 
@@ -224,17 +225,19 @@ def ball_films(
         Whether films are read from the table of points where it has them.
     solves : bool
         Whether films of a contact are solved where the table has too few.
+    inlet_heat : bool
+        Whether heat in the inlet thins them, by its rule (`ehdmaps.physics.point.inlet_heat`).
 
     Raises
     ------
     SolverError
         If too few loads of a contact have a film.
     InputError
-        If the oil has no such temperature.
+        If the oil has no such temperature; for heat of an oil whose conductivity is not known.
     """
     contacts = geometry.contacts(material)
     films = [
-        _contact_films(side, contact, _Point(oil, entrainment_speed, temperature), table, solves)
+        _contact_films(side, contact, _Point(oil, entrainment_speed, temperature, inlet_heat), table, solves)
         for side, contact in zip(("inner", "outer"), contacts, strict=True)
     ]
     low, high = max(float(side.loads[0]) for side in films), min(float(side.loads[-1]) for side in films)
@@ -248,11 +251,12 @@ def ball_films(
 
 
 class _Point(NamedTuple):
-    """Oil, entrainment speed [m/s], temperature [K]."""
+    """Oil, entrainment speed [m/s], temperature [K], and whether heat in the inlet thins the films."""
 
     oil: Lubricant
     speed: float
     temperature: float
+    inlet_heat: bool
 
 
 class _Film(NamedTuple):
@@ -309,9 +313,9 @@ def _some(films: PointFilms, places: IntArray) -> PointFilms:
 def _read(contact: Ellipse, point: _Point, heaviest: float) -> tuple[list[_Film], PointFilms]:
     """Films of the table at its own loads, and at both ends."""
     films = shipped_point_table()
-    nodes = films.loads(contact, *point)
+    nodes = films.loads(contact, point.oil, point.speed, point.temperature)
     loads = np.r_[LIGHTEST, nodes[(nodes > LIGHTEST * _NEAR) & (nodes < heaviest / _NEAR)], heaviest]
-    read = films.films(contact, point.oil, loads, point.speed, point.temperature)
+    read = films.films(contact, point.oil, loads, point.speed, point.temperature, point.inlet_heat)
     usable, reasons = read.usable.tolist(), read.reason.tolist()
     values = np.column_stack([getattr(read, name) for name in _NAMES]).tolist()
     errors = np.column_stack([read.errors[name] for name in _NAMES]).tolist()
@@ -328,11 +332,13 @@ _NEAR = 1.02
 
 def _solved(contact: Ellipse, point: _Point, loads: FloatArray) -> Iterator[_Film]:
     """Films of loads from light to heavy that are solved, until neighbours beyond one that has a film have none."""
-    from ehdmaps.point.solver import solve
+    from ehdmaps.point.solver import heated_solution, solve
 
     missing, heavy = 0, False
     for load in map(float, loads):
         one = solve(contact, point.oil, load, point.speed, point.temperature)
+        if point.inlet_heat:
+            one = heated_solution(one, point.oil)
         good = one.status.usable and one.damping > 0.0 and one.film_offset > 0.0
         values = tuple(getattr(one, name) for name in _NAMES) if good else ()
         heavy = heavy or good

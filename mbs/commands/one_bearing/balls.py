@@ -11,7 +11,7 @@ import numpy as np
 from ehdmaps.errors import AnalysisError, InputError, SolverError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
-from ehdmaps.physics.point.film_formulas import POINT_FILMS
+from ehdmaps.physics.point.film_formulas import POINT_FILMS, point_films
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.surface import Surface
 from ehdmaps.program import tell
@@ -53,10 +53,10 @@ def _read(arguments: argparse.Namespace, chosen: Mapping[str, Any], problems: li
     return Asked(geometry, {})
 
 
-def _words_of(law: str, oil: Lubricant, _: Surface, damper: Damper) -> tuple[str, str]:
+def _words_of(law: str, oil: Lubricant, _: Surface, damper: Damper, heat: bool) -> tuple[str, str]:
     """Law and films."""
     if law:
-        return f"films of {oil.title}, {POINT_FILMS}, {_SOURCES[law]}", "films of the law"
+        return f"films of {oil.title}, {point_films(heat)}, {_SOURCES[law]}", "films of the law"
     dry = "dry Hertz" + (f", {damper.words} of each contact" if damper.words else "")
     return dry, f"films by the formula of Hamrock and Dowson, {oil.title}, {POINT_FILMS}"
 
@@ -70,8 +70,14 @@ def _films_at(request: Request, entrainment_speed: float) -> BallFilms:
     """Films of an entrainment speed [m/s]."""
     from mbs.bearings.balls.films import ball_films  # with the table of point contacts
 
-    temperature, solves = request.description.temperature, request.films == FILMS
-    return ball_films(request.force.geometry, request.oil, entrainment_speed, temperature, solves=solves)
+    return ball_films(
+        request.force.geometry,
+        request.oil,
+        entrainment_speed,
+        request.description.temperature,
+        solves=request.films == FILMS,
+        inlet_heat=request.inlet_heat,
+    )
 
 
 def _at_speed(request: Request) -> Callable[[float], AtSpeed]:
@@ -138,7 +144,7 @@ def _oscillating(points: Sequence[BallPoint]) -> Oscillating:
 BALL_BEARINGS = Family(
     kind=BALLS,
     words="ball bearing",
-    taken=("law", "clearance", "temperature", "roughness", "films"),
+    taken=("law", "physics", "clearance", "temperature", "roughness", "films"),
     own=(),
     film_laws=(FILMS, TABLE_LAW),
     beside_laws="; maps are of line contacts",

@@ -39,6 +39,7 @@ from mbs.commands.one_bearing.shared import (
     Given,
     assumed_clearance,
     read_choices,
+    read_heat,
     read_oil,
     read_one,
     read_operating,
@@ -347,6 +348,8 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
     if bearing is not None and emap is not None:
         problems += geometry_problems("the bearing", bearing.geometry, emap)
     oil = _oil(arguments.oil, given, emap, "map" in chosen, temperature, problems)
+    lack = "" if law == TABLE_LAW else f"without films of the film table; allowed: with --law {TABLE_LAW}"
+    heat = read_heat(chosen, oil, lack, problems)
     stated_supply = None if given is None else given.supply
     supply = chosen.get("supply") or stated_supply or (FLOODED if emap is None else emap.supply)
     outputs = (
@@ -360,7 +363,7 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
     if problems or bearing is None or given is None or oil is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     if law == TABLE_LAW:
-        made = _table_map(bearing.geometry, oil, given.material, asked.speeds, temperature)
+        made = _table_map(bearing.geometry, oil, given.material, asked.speeds, temperature, heat)
         law, emap = "map", _structured(made, "map", chosen, problems)
         if problems:
             raise InputError(problems)
@@ -451,7 +454,12 @@ def _assumed(
 
 
 def _table_map(
-    geometry: BearingGeometry, oil: Lubricant, material: Material, speeds: Sequence[float], temperature: float
+    geometry: BearingGeometry,
+    oil: Lubricant,
+    material: Material,
+    speeds: Sequence[float],
+    temperature: float,
+    inlet_heat: bool,
 ) -> EHDMap:
     """Map in memory over the usual loads, and over the speeds [rad/s] and the temperature [K] that are asked for."""
     from ehdmaps.jobs.make.table_law import SPEEDS, table_map
@@ -465,13 +473,14 @@ def _table_map(
         entrainment_speeds=(slow if len(turning) == len(speeds) else min(slow, SPEEDS[0]), fast),
         temperatures=(temperature, temperature),
         material=material,
+        inlet_heat=inlet_heat,
     )
 
 
 def _law_words(law: str, emap: EHDMap | None, oil: Lubricant) -> str:
     """The law, for people."""
     if law == "map" and emap is not None and emap.from_table:
-        return f"film table, {oil.title}{structure_words(emap)}"
+        return f"film table, {oil.title}{', inlet heat' if emap.inlet_heat else ''}{structure_words(emap)}"
     if law == "map" and emap is not None:
         return f"map of {oil.title}, solver {emap.solver}{structure_words(emap)}"
     words = f"film formula moes, {oil.title} (its damping is far too low for loaded contacts)"

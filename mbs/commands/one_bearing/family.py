@@ -73,6 +73,8 @@ class Request:
         Whether films are those of the default: speeds without any are dry then, and say why.
     memory : bool
         Whether the films of a file for another program have a memory.
+    inlet_heat : bool
+        Whether heat in the inlet thins the films.
     oil : Lubricant
         Oil of the films.
     surface : Surface
@@ -91,6 +93,7 @@ class Request:
     films: str
     by_default: bool
     memory: bool
+    inlet_heat: bool
     oil: Lubricant
     surface: Surface
     operating: Operating
@@ -132,7 +135,7 @@ class Family:
     force : callable
         (asked, damper) -> force with the dry law.
     words_of : callable
-        (law with films or empty, oil, surface, damper) -> law, and films, in words.
+        (law with films or empty, oil, surface, damper, heat in the inlet) -> law, and films, in words.
     films : callable
         (request) -> law with the films of an entrainment speed [m/s]; None without any.
     at_speed : callable
@@ -157,7 +160,7 @@ class Family:
     read: Callable[[argparse.Namespace, Mapping[str, Any], list[str]], Asked | None]
     axial_problem: Callable[[Any, float], str]
     force: Callable[[Asked, Damper], Any]
-    words_of: Callable[[str, Lubricant, Surface, Damper], tuple[str, str]]
+    words_of: Callable[[str, Lubricant, Surface, Damper, bool], tuple[str, str]]
     films: Callable[[Request], Callable[[float], PairLaw] | None]
     at_speed: Callable[[Request], Callable[[float], AtSpeed]]
     point: type[LocatingPoint]

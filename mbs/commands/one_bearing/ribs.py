@@ -29,7 +29,7 @@ from mbs.scene.map_set import TABLE_LAW
 if TYPE_CHECKING:
     from mbs.exports.one_bearing.kind import ExportKind
 
-_TAKEN = ("law", "temperature", "roughness", "films")
+_TAKEN = ("law", "physics", "temperature", "roughness", "films")
 """Choices that all of them take; those without a contact angle have a clearance too."""
 
 
@@ -88,12 +88,13 @@ def _axial_of_ribs(geometry: RibbedGeometry, axial: float) -> str:
     return f"--axial: got {FORCE.text(axial)}; allowed: {allowed}"
 
 
-def _words_of(law: str, oil: Lubricant, surface: Surface, damper: Damper) -> tuple[str, str]:
+def _words_of(law: str, oil: Lubricant, surface: Surface, damper: Damper, heat: bool) -> tuple[str, str]:
     """Law and films."""
     films = f"films by the formulas of Moes and Dowson-Higginson, {oil.title}"
     if law:
         rough = "" if surface.smooth else f", {surface.label}"
-        return f"film table at radius and speed of the middle, rib dry{rough}", films
+        warm = ", inlet heat" if heat else ""
+        return f"film table at radius and speed of the middle{warm}, rib dry{rough}", films
     return "dry, ISO/TS 16281, rib Hertz" + (f", {damper.words} of each contact" if damper.words else ""), films
 
 
@@ -105,7 +106,8 @@ def _films(request: Request) -> Callable[[float], LineFilms] | None:
     from mbs.scene.locating.line_films import FilmsOfLines, OilOfLines
 
     geometry, temperature = request.force.geometry, request.description.temperature
-    films = FilmsOfLines(geometry, OilOfLines("table", request.oil, temperature, fastest, surface=request.surface))
+    oil = OilOfLines("table", request.oil, temperature, fastest, surface=request.surface, inlet_heat=request.inlet_heat)
+    films = FilmsOfLines(geometry, oil)
     return lambda u: films(u / geometry.entrainment_speed(1.0), 0.0)
 
 

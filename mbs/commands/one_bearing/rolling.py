@@ -22,6 +22,7 @@ from mbs.commands.one_bearing.shared import (
     assumed_clearance,
     read_choices,
     read_damper,
+    read_heat,
     read_oil,
     read_operating,
     read_surface,
@@ -70,13 +71,14 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
     damper = Damper() if films else read_damper(law, family.words, more, problems)
     temperature = float(chosen.get("temperature", CELSIUS_40))
     oil = read_oil(arguments.oil, temperature, problems)
+    heat = read_heat(chosen, oil, "" if films else f"with dry contacts; allowed: with --law {TABLE_LAW}", problems)
     problems += output_problems((*bearing_outputs(arguments.output), Output("--plot", arguments.plot, FIGURE)), [])
     counts = len(operating.loads), len(operating.speeds)
     problems += count_problems(arguments.output, *counts, of_one_load=is_export(arguments.output))
     if problems or asked is None or damper is None or oil is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     surface, roughness, for_lambda = read_surface(chosen)
-    words, source = family.words_of(films, oil, surface, damper)
+    words, source = family.words_of(films, oil, surface, damper, heat)
     with_clearance = "clearance" in family.taken
     assumed = (
         *([f"temperature {TEMPERATURE.text(CELSIUS_40)}"] if "temperature" not in chosen else []),
@@ -92,6 +94,7 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
         films=films,
         by_default="law" not in chosen,
         memory=chosen.get("films") == "memory",
+        inlet_heat=heat,
         oil=oil,
         surface=surface,
         operating=operating,

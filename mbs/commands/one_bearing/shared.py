@@ -14,9 +14,10 @@ from ehdmaps.choices import texts_of
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.designations.clearance import clearance_range
+from ehdmaps.physics.heat import ISOTHERMAL, heat_data
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.solids import Material
+from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.surface import SMOOTH, CrownedProfile, Surface, TabulatedProfile
 from ehdmaps.units import RPM, Display, quantity, short
 from mbs.output.one_bearing.table import WIDE_RANGE
@@ -417,3 +418,29 @@ def read_oil(
         problems += [f"{option}: {problem}" for problem in error.problems]
         return None
     return oil
+
+
+def read_heat(chosen: Mapping[str, Any], oil: Lubricant | None, lack: str, problems: list[str]) -> bool:
+    """Tell whether heat in the inlet thins the films, as --physics says it.
+
+    Parameters
+    ----------
+    chosen : mapping of str to object
+        Values of the choices.
+    oil : Lubricant or None
+        Oil of the films, whose conductivity has to be known.
+    lack : str
+        Why films have none of it, and what is allowed; empty where they may.
+    problems : list of str
+        List that takes what is wrong.
+    """
+    physics = chosen.get("physics", ISOTHERMAL)
+    if "physics" in chosen and lack:
+        problems.append(f"--physics: got {physics} {lack}")
+    if physics == ISOTHERMAL or lack or oil is None:
+        return False
+    try:
+        heat_data(oil, STEEL)
+    except InputError as error:
+        problems += [f"--physics: {problem}" for problem in error.problems]
+    return True

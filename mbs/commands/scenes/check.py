@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry
@@ -24,6 +25,9 @@ from mbs.scene.fields import DEGREE, HERTZ, MICROMETRE
 from mbs.scene.locating.ribs import open_sides
 from mbs.scene.scene import Scene
 from mbs.scene.specs import BearingSpec, LocatingSpec, RigidSpec, ShaftSpec
+
+if TYPE_CHECKING:
+    from mbs.bearings.balls.ball_element import MachineBalls
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -47,7 +51,13 @@ def _physics(arguments: argparse.Namespace, model: Model) -> Iterator[str]:
         if verdict.matters:
             yield f"  {verdict.line}"
     if model.balls and model.scene.lubricant is not None:
-        yield "  films of balls are smooth, flooded, isothermal and Newtonian; what that leaves out is not weighed"
+        heat = "with heat in the inlet" if any(_heated(entry) for entry in model.balls) else "isothermal"
+        yield f"  films of balls are smooth, flooded, Newtonian and {heat}; what that leaves out is not weighed"
+
+
+def _heated(balls: MachineBalls) -> bool:
+    """Tell whether films of a ball bearing have heat in the inlet."""
+    return bool(getattr(balls.films, "inlet_heat", False))
 
 
 def _oil(scene: Scene) -> Iterator[str]:

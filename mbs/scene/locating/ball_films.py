@@ -40,7 +40,8 @@ def films_of_balls(spec: BallSpec, surroundings: Surroundings) -> FilmsOfPoints:
     """
     # films depend neither on the clearance nor on which way it stands
     geometry = dataclasses.replace(spec.geometry, clearance=0.0, contact_angle=abs(spec.geometry.contact_angle))
-    return FilmsOfPoints(geometry, surroundings.laws.lubricant, surroundings.temperature)
+    laws = surroundings.laws
+    return FilmsOfPoints(geometry, laws.lubricant, surroundings.temperature, laws.inlet_heat)
 
 
 @dataclass(frozen=True)
@@ -55,11 +56,14 @@ class FilmsOfPoints:
         The oil.
     temperature : float
         Temperature of the raceways [K].
+    inlet_heat : bool
+        Whether heat in the inlet thins the films.
     """
 
     geometry: BallGeometry
     oil: Lubricant
     temperature: float
+    inlet_heat: bool = False
 
     def __call__(self, inner_speed: float, outer_speed: float) -> BallLaw:
         """Laws at speeds of the inner and the outer ring [rad/s]."""
@@ -101,7 +105,8 @@ def _films_at(films: FilmsOfPoints, u: float) -> BallFilms:
     """Films at an entrainment speed of the table [m/s]."""
     from mbs.bearings.balls.films import ball_films
 
-    return ball_films(films.geometry, films.oil, u, films.temperature, solves=False)
+    heat = films.inlet_heat
+    return ball_films(films.geometry, films.oil, u, films.temperature, solves=False, inlet_heat=heat)
 
 
 @functools.lru_cache(maxsize=32)
@@ -112,7 +117,7 @@ def _line_map(films: FilmsOfPoints, side: int) -> EHDMap:
     ellipse = films.geometry.contacts(STEEL)[side]
     contact = LineContact("line", ellipse.rolling_radius, STEEL, "half_space", reference_depth=ellipse.rolling_radius)
     temperatures = min(TEMPERATURES[0], films.temperature), max(TEMPERATURES[1], films.temperature)
-    return table_map(contact, films.oil, LOADS, temperatures=temperatures)
+    return table_map(contact, films.oil, LOADS, temperatures=temperatures, inlet_heat=films.inlet_heat)
 
 
 @dataclass(frozen=True)

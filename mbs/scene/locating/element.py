@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.oil_supply import FLOODED
-from ehdmaps.physics.point.film_formulas import POINT_FILMS
+from ehdmaps.physics.point.film_formulas import point_films
 from ehdmaps.physics.surface import SMOOTH
 from ehdmaps.units import TEMPERATURE
 from mbs.bearings.balls.ball_bearing import BallForce
@@ -71,6 +71,7 @@ def _oil_of_lines(laws: ContactLaws, temperature: float, fastest: float = 0.0) -
         fastest,
         laws.asked_supply or laws.scene.supply or FLOODED,
         laws.surface or laws.scene.surface or SMOOTH,
+        laws.inlet_heat,
     )
 
 
@@ -85,7 +86,7 @@ def _films_of_lines(spec: TaperedSpec, surroundings: Surroundings) -> FilmsOfLin
 
 def _sources_of_points(laws: ContactLaws) -> tuple[str, str]:
     """Films of balls in words."""
-    return f"films from the film table of points, {laws.lubricant.title}, {POINT_FILMS}", ""
+    return f"films from the film table of points, {laws.lubricant.title}, {point_films(laws.inlet_heat)}", ""
 
 
 def _sources_of_lines(laws: ContactLaws) -> tuple[str, str]:
@@ -93,7 +94,8 @@ def _sources_of_lines(laws: ContactLaws) -> tuple[str, str]:
     films = _oil_of_lines(laws, 0.0)
     source = "film formula moes" if films.law == "formula" else "films from the film table"
     return (
-        f"{source} at radius and speed of the middle of rollers, {films.oil.title}, {films.supply.label}, "
+        f"{source} at radius and speed of the middle of rollers, {films.oil.title}, "
+        f"{'inlet heat, ' if films.inlet_heat else ''}{films.supply.label}, "
         f"{surface_label(films.surface)}",
         ", ribs dry",
     )

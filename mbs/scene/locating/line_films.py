@@ -43,6 +43,8 @@ class OilOfLines:
         Highest entrainment speed that is asked for [m/s].
     supply, surface : OilSupply, Surface
         Oil supply and surfaces of the contacts.
+    inlet_heat : bool
+        Whether heat in the inlet thins films of the table.
     """
 
     law: Literal["table", "formula"]
@@ -51,6 +53,7 @@ class OilOfLines:
     fastest: float = 0.0
     supply: OilSupply = FLOODED
     surface: Surface = SMOOTH
+    inlet_heat: bool = False
 
 
 @dataclass(frozen=True)
@@ -112,7 +115,7 @@ def _map(cylinder: BearingGeometry, films: OilOfLines) -> EHDMap:
     from ehdmaps.jobs.make.table_law import TEMPERATURES, table_map
 
     temperatures = min(TEMPERATURES[0], films.temperature), max(TEMPERATURES[1], films.temperature)
-    return table_map(cylinder, films.oil, LOADS, _speeds(films), temperatures)
+    return table_map(cylinder, films.oil, LOADS, _speeds(films), temperatures, inlet_heat=films.inlet_heat)
 
 
 @functools.lru_cache(maxsize=16)
