@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -215,8 +216,9 @@ def _bearings(result: Sweep, torque: FloatArray) -> list[str]:
         changed = (
             f"{load[0]:.5g} N" if abs(load[1] - load[0]) <= 1e-3 * load[0] else f"{load[0]:.5g} to {load[1]:.5g} N"
         )
-        wide = 100.0 * float(entry.stiffness_spread[:, index].max())
-        spread = f"; mean of {entry.angles} cage angles, k within {wide:.2g} % of it" if entry.angles > 1 else ""
+        wide = 100.0 * float(entry.stiffness_spread[:, index].max())  # NaN without a load
+        told = entry.angles > 1 and math.isfinite(wide)
+        spread = f"; mean of {entry.angles} cage angles, k within {wide:.2g} % of it" if told else ""
         stiff = (
             f"along the load k {SPRING.value(k[0]):.4g} to {SPRING.text(k[1])} ({_change(*k)}), "
             f"c {DAMPER.value(c[0]):.4g} to {DAMPER.text(c[1])} ({_change(*c)})"
