@@ -229,7 +229,7 @@ def _laws(base: Subject) -> Iterator[Tried]:
     """Laws from dry to the most complete one."""
     memory, group = base.law, Group("law", base)
     has_map = memory.name != "formula"
-    has_formula = has_map and not base.scene.balls  # balls have none
+    has_formula = has_map and not base.scene.has_points  # balls have none
     laws = [
         (LawChoice(law_label("hertz"), "hertz"), not has_map),
         (LawChoice(f"{law_label('hertz')}, usual damper", DAMPER), False),
@@ -245,7 +245,7 @@ def _laws(base: Subject) -> Iterator[Tried]:
 
 def _supplies(base: Subject) -> Iterator[Tried]:
     """Oil supplies, by the reference law."""
-    if base.scene.balls:  # whose films are flooded
+    if base.scene.has_points:  # whose films are flooded
         return
     given, group = set(base.model().supplies.values()), Group("oil supply", base)
     for text in SUPPLIES:

@@ -129,7 +129,7 @@ def about_lines(scene: Scene) -> list[str]:
         The scene.
     """
     held = ", ".join(f"{unknown.name} {unknown.held}" for unknown in held_open(scene))
-    missing = f"{NOT_IN_IT}, {BALL_CAGE}" if scene.balls else NOT_IN_IT
+    missing = f"{NOT_IN_IT}, {BALL_CAGE}" if scene.has_points else NOT_IN_IT
     return [f"  held open: {held or 'nothing'}; not in it: {missing}"] if scene.has_bearings else []
 
 

@@ -291,5 +291,5 @@ def _planned(scene: Scene, model: Model, settings: PlanSettings) -> PlanResult:
     if len(static) > mapped:
         from mbs.planning.seen import seen_ranges  # with the films of points
 
-        seen = seen_ranges(model.on_rings, static, speeds, scene.temperature, settings.margin)
+        seen = seen_ranges(model.located, static[mapped:], speeds, scene.temperature, settings.margin)
     return PlanResult(scene, model, speeds, needed, seen)

@@ -17,7 +17,7 @@ from ehdmaps.errors import AnalysisError
 from ehdmaps.units import LOAD, RPM, SPEED, Display
 from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.planning.ranges import LIGHT, LIGHTEST, idle_problem
-from mbs.scene.assembly import AnyBearing, Model
+from mbs.scene.assembly import Model
 from mbs.scene.fields import FORCE
 
 
@@ -58,7 +58,7 @@ class Seen:
 
 
 def seen_ranges(
-    bearings: Sequence[AnyBearing],
+    bearings: Sequence[LocatingElement],
     static_loads: Sequence[float],
     speeds: tuple[float, float],
     temperature: float,
@@ -68,8 +68,8 @@ def seen_ranges(
 
     Parameters
     ----------
-    bearings : sequence of AnyBearing
-        All bearings of the system; those with maps are left out.
+    bearings : sequence of LocatingElement
+        Bearings of the system that have no maps.
     static_loads : sequence of float
         Largest load of each, from `mbs.planning.ranges.largest_loads`.
     speeds : (float, float)
@@ -86,8 +86,7 @@ def seen_ranges(
     """
     groups: dict[object, list[tuple[LocatingElement, float]]] = {}
     for bearing, load in zip(bearings, static_loads, strict=True):
-        if isinstance(bearing, LocatingElement):
-            groups.setdefault(bearing.same_films, []).append((bearing, load))
+        groups.setdefault(bearing.same_films, []).append((bearing, load))
     found = []
     for members in groups.values():
         names = tuple(bearing.name for bearing, _ in members)
@@ -147,7 +146,7 @@ def held_films(seen: Seen, model: Model, speeds: tuple[float, float]) -> Held:
     speeds : (float, float)
         Lowest and highest speed of the system [rad/s].
     """
-    element = next(entry for entry in unmapped(model) if entry.name == seen.bearings[0])
+    element = next(entry for entry in model.located if entry.name == seen.bearings[0])
     length = 1.0 if seen.of_points else seen.geometry.roller_length
     low, high, missing = 0.0, math.inf, ""
     for speed in np.unique(np.geomspace(*speeds, _SPEEDS)).tolist():
@@ -167,14 +166,3 @@ def _reason(text: str) -> str:
     head, _, rest = whole.partition("; at least")
     first = rest.partition("(")[2].partition("; ")[0].rstrip(")")
     return f"{head} ({first})" if first else head
-
-
-def unmapped(model: Model) -> tuple[LocatingElement, ...]:
-    """Bearings of a model of which no map is made, in the order of `Model.on_rings`.
-
-    Parameters
-    ----------
-    model : Model
-        Scene with its law.
-    """
-    return tuple(entry for entry in model.on_rings if isinstance(entry, LocatingElement))

@@ -38,7 +38,6 @@ from mbs.scene.turning import turning_loads, with_places
 
 if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
-    from mbs.bearings.balls.ball_element import MachineBalls
     from mbs.bearings.locating.locating_element import LocatingElement
     from mbs.gears.gear import GearMesh
 
@@ -257,8 +256,6 @@ class Model:
         Oil of each bearing by its name, that of its map where there is one; empty for laws without films.
     chosen : mapping of str to str
         What was chosen of the scene beside its law, see `mbs.scene.choices`.
-    balls : tuple of MachineBalls
-        Ball bearings in the order of the scene.
     recipe : Recipe
         How it was made of its scene.
     """
@@ -276,7 +273,6 @@ class Model:
     surface: Surface | None = None
     oils: Mapping[str, Lubricant] = field(default_factory=dict)
     chosen: Mapping[str, str] = field(default_factory=dict)
-    balls: tuple[MachineBalls, ...] = ()
     recipe: Recipe = field(default_factory=Recipe, repr=False)
 
     def again(self, scene: Scene) -> Model:
@@ -316,6 +312,11 @@ class Model:
         names = {entry.name for entry in self.scene.located}
         found = [entry.element for entry in self.system.elements if entry.element.name in names]
         return tuple(cast("list[LocatingElement]", found))
+
+    @property
+    def balls(self) -> tuple[LocatingElement, ...]:
+        """Those of balls among them."""
+        return tuple(entry for entry in self.located if entry.of_points)
 
     @property
     def ring_places(self) -> tuple[int, ...]:
@@ -430,7 +431,6 @@ def assemble(
     if problems:
         raise InputError(problems)
     bearings = tuple(_shown(built, "bearings", BearingElement))
-    of_balls = {spec.name for spec in scene.balls}
     words = [laws.words] if bearings else []
     if scene.located:
         from mbs.scene.locating.element import located_law_words
@@ -445,7 +445,6 @@ def assemble(
         bearings=bearings,
         gears=cast("tuple[GearMesh, ...]", tuple(part.shown for part in built["gears"])),
         label=laws.label if scene.has_bearings else NO_LAW,
-        balls=tuple(cast("MachineBalls", part.element) for part in built[""] if part.element.name in of_balls),
         memory=laws.memory,
         supplies=laws.supplies,
         surface=laws.surface,

@@ -712,7 +712,7 @@ def combinations(
             of_others = not scene.bearings and choice.concerned not in ("relaxing", "heat")
             lacks = LACKS[choice.concerned]
             if of_others and scene.located:
-                lacks = BALLS_LACK if scene.balls else TAPERED_LACK
+                lacks = BALLS_LACK if scene.has_points else TAPERED_LACK
             problems.append(f"--{choice.name}: got {got} {lacks}")
             continue
         found = [entry for one in found for entry in _each(one, choice, several, problems)]

@@ -19,14 +19,12 @@ from mbs.gears.pair import GearPair
 from mbs.model.elements import Input, Load, Sensor, Spring
 from mbs.scene.specs import (
     ORIGIN,
-    BallSpec,
     BearingSpec,
     BodySpec,
     ElementSpec,
     FlexibleSpec,
     LocatingSpec,
     ShaftSpec,
-    TaperedSpec,
     Triple,
 )
 from mbs.scene.turning import OrderLoad, Unbalance
@@ -160,19 +158,14 @@ class Scene:
         return tuple(entry for entry in self.elements if isinstance(entry, BearingSpec))
 
     @property
-    def balls(self) -> tuple[BallSpec, ...]:
-        """The ball bearings among the machine elements."""
-        return tuple(entry for entry in self.elements if isinstance(entry, BallSpec))
-
-    @property
-    def tapered(self) -> tuple[TaperedSpec, ...]:
-        """The bearings of tapered rollers, or of rollers between ribs, among the machine elements."""
-        return tuple(entry for entry in self.elements if isinstance(entry, TaperedSpec))
-
-    @property
     def located(self) -> tuple[LocatingSpec, ...]:
         """The bearings that carry axial load among the machine elements."""
         return tuple(entry for entry in self.elements if isinstance(entry, LocatingSpec))
+
+    @property
+    def has_points(self) -> bool:
+        """Tell whether it has bearings whose contacts are points: of balls."""
+        return any(entry.of_points for entry in self.located)
 
     @property
     def located_clearances(self) -> set[float]:

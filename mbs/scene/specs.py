@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
@@ -282,8 +282,11 @@ class LocatingSpec:
         Angle of the first rolling element from y [rad].
     axial_offset : float
         Way of the inner ring along x against the outer one where both places have not moved [m].
+    of_points : bool
+        Whether its contacts are points, else lines.
     """
 
+    of_points: ClassVar[bool] = False
     name: str
     inner: str
     outer: str
@@ -308,6 +311,8 @@ class LocatingSpec:
 @dataclass(frozen=True)
 class BallSpec(LocatingSpec):
     """A ball bearing, see `LocatingSpec`."""
+
+    of_points: ClassVar[bool] = True
 
     @property
     def elements(self) -> str:

@@ -13,7 +13,7 @@ from typing import Any
 
 from mbs.scene.changes import with_bearing
 from mbs.scene.scene import Scene
-from mbs.scene.specs import BallSpec, BearingSpec, LocatingSpec, TaperedSpec
+from mbs.scene.specs import BallSpec, BearingSpec, LocatingSpec
 from mbs.unknowns.statement import tolerance_of
 from mbs.unknowns.unknown import Unknown, looks_of
 
@@ -73,9 +73,9 @@ def profiles(scene: Scene) -> Iterator[Unknown]:
     scene : Scene
         The scene.
     """
-    rollers: tuple[BearingSpec | TaperedSpec, ...] = (*scene.bearings, *scene.tapered)
-    for entry in rollers:
-        if entry.profile == "iso" and tolerance_of(scene, "profile", entry.name) is None:
+    entries: tuple[BearingSpec | LocatingSpec, ...] = (*scene.bearings, *scene.located)
+    for entry in entries:
+        if getattr(entry, "profile", None) == "iso" and tolerance_of(scene, "profile", entry.name) is None:
             straight = with_bearing(scene, entry.name, lambda one: dataclasses.replace(one, profile="straight"))
             yield Unknown(f"profile of {entry.name}", "profile", "iso or straight", "not stated: assumed", (straight,))
 

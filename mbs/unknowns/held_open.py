@@ -233,5 +233,5 @@ def elements_of(entry: BearingSpec | LocatingSpec) -> int:
 
 def clearance_of(entry: BearingSpec | LocatingSpec) -> float | None:
     """Diametral clearance of a bearing [m]; None for tapered rollers, whose play is set along the axis."""
-    field: str = entry.geometry.clearance_field
-    return float(getattr(entry.geometry, field)) if field else None
+    found: float | None = entry.geometry.clearance
+    return found

@@ -33,7 +33,6 @@ NAMED = {
     "exports/exudyn.py",  # a file for another program, of balls alone
     "output/one_bearing/located.py",
     "report/located.py",
-    "scene/assembly.py",  # `Model.balls`
     "scene/locating/element.py",
     "transient/kinds.py",  # with a block in C: without one, runs call it from Python
 }

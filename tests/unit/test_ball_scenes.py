@@ -129,7 +129,7 @@ class TestExtremes:
         scene = parse_scene(text("7208B", 'axial_offset = "8 um"', "mirrored = true", loads=False), "pair", "pair.toml")
         scene = dataclasses.replace(scene, speed=0.0)
         scene = dataclasses.replace(scene, springs=[])
-        held = dataclasses.replace(scene, elements=[dataclasses.replace(e, outer="ground") for e in scene.balls])
+        held = dataclasses.replace(scene, elements=[dataclasses.replace(e, outer="ground") for e in scene.located])
         held = dataclasses.replace(held, bodies=[body for body in held.bodies if body.name == "rotor"])
         machine = assemble(held, "hertz")
         found = equilibrium(machine.system, machine.operation)

@@ -164,7 +164,7 @@ def test_a_scene_is_read():
 def test_shipped_systems_are_read_and_mark_what_is_assumed(name):
     scene = read_scene(name)
     assert scene.assumed
-    assert scene.bearings or scene.balls
+    assert scene.has_bearings
     assert scene.run_up is not None
 
 

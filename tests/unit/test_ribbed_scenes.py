@@ -89,7 +89,7 @@ def test_ribs_hold_a_mass_along_x(keys, way) -> None:
     (element,) = (connected.element for connected in machine.system.elements)
     assert isinstance(element, TaperedElement)
     balance = equilibrium(machine.system, machine.operation)
-    profile = machine.scene.tapered[0].profile
+    profile = machine.scene.located[0].profile
     alone = TaperedForce(ribbed_estimate("NUP210"), profile=profile, slices=41)
     pose = [float(balance.displacement[0]), 0.0, 0.0, 0.0, 0.0, 0.0]
     force, stiffness, _ = alone(pose, inner_speed=machine.operation.speed)
@@ -107,7 +107,7 @@ def test_keys_and_choices_reach_the_ribs() -> None:
     )
     assert shifted - plain == pytest.approx(15e-6, abs=1e-12)  # of the equilibrium
     mirrored = model(bearing="NJ210", more='mirrored = true\naxial_clearance = "20 um"', force="-1500 N")
-    assert mirrored.scene.tapered[0].geometry.carries == "-x"
+    assert mirrored.scene.located[0].geometry.carries == "-x"
     assert equilibrium(mirrored.system, mirrored.operation).displacement[0] < -10e-6
     assert mirrored.law == "ribbed roller bearings dry Hertz"
 
@@ -121,7 +121,7 @@ def test_mbs_check_says_how_ribs_carry(capsys, tmp_path) -> None:
 
 def test_a_shaft_held_along_x_has_bearings_without_ribs() -> None:
     machine = model(freedoms='"y", "z"', more='rollers = "bodies"')
-    assert not machine.scene.tapered
+    assert not machine.scene.located
     assert machine.scene.bearings[0].between_ribs is None and machine.scene.bearings[0].rollers_as_bodies
 
 

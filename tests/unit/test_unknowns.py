@@ -55,7 +55,7 @@ def test_each_unknown_has_the_machines_at_its_ends():
     clearances = [look.bearings[0].geometry.diametral_clearance for look in found["clearance of left"].looks]
     assert clearances == [5e-6, 50e-6]
     assert base.bearings[0].geometry.diametral_clearance == 27.5e-6
-    assert [look.balls[0].geometry.clearance for look in found["clearance of right"].looks] == pytest.approx(
+    assert [look.located[0].geometry.clearance for look in found["clearance of right"].looks] == pytest.approx(
         [5e-6, 15e-6]
     )
     assert [look.temperature - base.temperature for look in found["temperature"].looks] == pytest.approx([-5.0, 5.0])
@@ -68,7 +68,7 @@ def test_each_unknown_has_the_machines_at_its_ends():
     assert both[1] / both[0] == pytest.approx(1.25)
     assert found["pressure-viscosity"].reflected
     assert [look.bearings[0].geometry.rollers for look in found["number of rollers of left"].looks] == [13, 15]
-    grooves = [look.balls[0].geometry.outer_conformity for look in found["outer groove of right"].looks]
+    grooves = [look.located[0].geometry.outer_conformity for look in found["outer groove of right"].looks]
     assert grooves == pytest.approx([0.515, 0.53])
     assert [look.loads[0].force[0] for look in found["preload"].looks] == pytest.approx([160.0, 240.0])
     (straight,) = found["profile of left"].looks

@@ -49,7 +49,7 @@ class TestRoss:
         scene = read_scene(request.param)
         given = tomllib.loads((REFERENCES / f"ross_{request.param}.toml").read_text(encoding="utf-8"))
         speeds, elements = np.array(given["speeds"]), []
-        for ball in scene.balls:
+        for ball in scene.located:
             whole = np.zeros((2, speeds.size, 6, 6))
             for part, key in zip(whole, ("stiffness", "damping"), strict=True):
                 part[:, 1:3, 1:3] = given["tables"][ball.name][key]

@@ -136,6 +136,11 @@ class Named:
         """Name of the bearing in titles: its label, else its name; `estimated` is for a line of its own."""
         return self.label or self.name
 
+    @property
+    def clearance(self) -> float | None:
+        """Diametral clearance [m]; None where what presses or loosens rollers is an axial displacement."""
+        return getattr(self, self.clearance_field) if self.clearance_field else None
+
     def record(self) -> dict[str, float | str]:
         """Everything that defines the bearing, for provenance; SI units; what is not given is left out."""
         own: Any = self

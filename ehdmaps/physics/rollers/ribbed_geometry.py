@@ -99,11 +99,6 @@ class RibbedGeometry(TaperedGeometry):
         if problems:
             raise InputError(problems)
 
-    @property
-    def clearance(self) -> float:
-        """Diametral clearance [m]."""
-        return self.diametral_clearance
-
     def carries_along(self, way: float) -> bool:
         """Tell whether ribs carry a force on the inner ring along x, `way` > 0, or along -x."""
         return self.carries in ("both", "+x" if way > 0.0 else "-x")

@@ -123,11 +123,6 @@ class TaperedGeometry(Named):
         if problems:
             raise InputError(problems)
 
-    @property
-    def clearance(self) -> float | None:
-        """Diametral clearance [m]; None: what presses or loosens rollers is an axial displacement."""
-        return None
-
     def carries_along(self, way: float) -> bool:
         """Tell whether it carries a force on the inner ring along x, `way` > 0, or along -x."""
         return self.contact_angle * way > 0.0

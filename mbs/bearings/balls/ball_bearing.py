@@ -205,7 +205,7 @@ class BallForce(LocatingForce):
     def speed_loads(
         self, inner_speed: float, outer_speed: float = 0.0, cage_speed: float | None = None
     ) -> tuple[float, float]:
-        """See `LocatingForce.speed_loads`; with the factor G of the moment G sin(alpha_o)."""
+        """Centrifugal load, and factor G of the moment G sin(alpha_o), see `LocatingForce.speed_loads`."""
         centrifugal, traction, _, _ = ball_loads(
             self.drive_at(inner_speed=inner_speed, outer_speed=outer_speed),
             self._cage_of(inner_speed, outer_speed, cage_speed),

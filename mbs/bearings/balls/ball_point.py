@@ -43,7 +43,7 @@ class BallPoint(LocatingPoint):
 
     @staticmethod
     def advice(force: BallForce, load: FloatArray, speeds: tuple[float, float]) -> str:
-        """See `LocatingPoint.advice`."""
+        """Advice on the axial load, see `LocatingPoint.advice`."""
         angle = force.geometry.contact_angle
         if not angle:
             return ""

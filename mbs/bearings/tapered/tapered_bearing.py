@@ -254,7 +254,7 @@ class TaperedForce(LocatingForce):
     def speed_loads(
         self, inner_speed: float, outer_speed: float = 0.0, cage_speed: float | None = None
     ) -> tuple[float, float]:
-        """See `LocatingForce.speed_loads`; with the moment from the axis outwards."""
+        """Centrifugal load, and moment from the axis outwards, see `LocatingForce.speed_loads`."""
         geometry, cage = self.geometry, self._cage_of(inner_speed, outer_speed, cage_speed)
         mass = geometry.roller_mass(self.material)
         along, across = geometry.roller_inertia(self.material)

@@ -59,7 +59,7 @@ class TaperedPoint(LocatingPoint):
 
     @staticmethod
     def advice(force: TaperedForce, load: FloatArray, speeds: tuple[float, float]) -> str:
-        """See `LocatingPoint.advice`."""
+        """Advice on the axial load, see `LocatingPoint.advice`."""
         geometry = force.geometry
         thrown = geometry.rollers * force.speed_loads(*speeds)[0]
         least = math.tan(geometry.cup_angle) * (math.hypot(*load[1:]) + thrown)

@@ -240,7 +240,7 @@ class BearingRequest:
         oil, emap, kelvin = scene.lubricant or self.oil, self.emap, scene.temperature
         if emap is not None and emap.from_table:
             structure = emap.structural_law
-            made = _table_map(spec.geometry, oil, bearing.material, self.speeds, kelvin)
+            made = _table_map(spec.geometry, oil, bearing.material, self.speeds, kelvin, emap.inlet_heat)
             emap = made.with_structure(structure)
         elif emap is not None and (wrong := geometry_problems("the bearing", spec.geometry, emap)):
             raise InputError(wrong)

@@ -27,7 +27,7 @@ from mbs.scene.scene import Scene
 from mbs.scene.specs import BearingSpec, LocatingSpec, RigidSpec, ShaftSpec
 
 if TYPE_CHECKING:
-    from mbs.bearings.balls.ball_element import MachineBalls
+    pass
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -51,13 +51,12 @@ def _physics(arguments: argparse.Namespace, model: Model) -> Iterator[str]:
         if verdict.matters:
             yield f"  {verdict.line}"
     if model.balls and model.scene.lubricant is not None:
-        heat = "with heat in the inlet" if any(_heated(entry) for entry in model.balls) else "isothermal"
+        heat = (
+            "with heat in the inlet"
+            if any(getattr(one.films, "inlet_heat", False) for one in model.balls)
+            else "isothermal"
+        )
         yield f"  films of balls are smooth, flooded, Newtonian and {heat}; what that leaves out is not weighed"
-
-
-def _heated(balls: MachineBalls) -> bool:
-    """Tell whether films of a ball bearing have heat in the inlet."""
-    return bool(getattr(balls.films, "inlet_heat", False))
 
 
 def _oil(scene: Scene) -> Iterator[str]:

@@ -372,22 +372,22 @@ def stated_size(error: float) -> float:
     return 0.0 if math.isnan(error) else abs(error)
 
 
-def jump(
-    wild: WildPoint, film: FilmSolution, whole: ContactSolution, other: FilmSolution, its: ContactSolution
-) -> tuple[str, float]:
+Solved = tuple[FilmSolution, ContactSolution]
+"""Film and contact of a point."""
+
+
+def jump(wild: WildPoint, solved: Solved, beside: Solved) -> tuple[str, float]:
     """Quantities that change too much between points a hair apart, and the share of its bound that the largest takes.
 
     Parameters
     ----------
     wild : WildPoint
         The point.
-    film, whole
-        Film and contact of the point.
-    other, its
-        Film and contact of the point beside it.
+    solved, beside : Solved
+        Solution of it, and of the point beside it.
     """
     worst, share = "", 0.0
-    for name, apart, size, error in _differences(wild, film, whole, other, its):
+    for name, apart, size, error in _differences(wild, solved, beside):
         bound = JUMP * size + error
         if apart > share * bound:
             worst, share = (
@@ -397,32 +397,28 @@ def jump(
     return (worst if share > 1.0 else ""), share
 
 
-def error_ratios(
-    wild: WildPoint, film: FilmSolution, whole: ContactSolution, exact: FilmSolution, best: ContactSolution
-) -> dict[str, float]:
+def error_ratios(wild: WildPoint, solved: Solved, exact: Solved) -> dict[str, float]:
     """Errors over what is stated of them; round-off counts as stated.
 
     Parameters
     ----------
-    wild : WildPoint
-        The point.
-    film, whole
-        Film and contact of the point.
-    exact, best
-        Film and contact on the finer grid.
+    wild, solved
+        What `jump` takes.
+    exact : Solved
+        The solution on a finer grid.
     """
+    film, whole = solved
     stated = {"film": film.film_offset_error, "stiffness": whole.stiffness_error, "damping": whole.damping_error}
     ratios = {}
-    for name, apart, size, _ in _differences(wild, film, whole, exact, best):
+    for name, apart, size, _ in _differences(wild, solved, exact):
         own = abs(whole.damping) if name == "damping" else size
         ratios[name] = apart / (stated_size(stated[name]) * own + 1e-6 * size)
     return ratios
 
 
-def _differences(
-    wild: WildPoint, film: FilmSolution, whole: ContactSolution, other: FilmSolution, its: ContactSolution
-) -> Iterator[tuple[str, float, float, float]]:
+def _differences(wild: WildPoint, solved: Solved, beside: Solved) -> Iterator[tuple[str, float, float, float]]:
     """Yield name, difference, size and stated error of what is compared between two solutions."""
+    (film, whole), (other, its) = solved, beside
     contact, load, speed, _ = wild.point
     half = float(half_width(load, contact.radius, contact.reduced_modulus))
     # Damping goes through zero in its valley: there its size is that of the stiffness times the time of passage.

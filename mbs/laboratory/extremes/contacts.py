@@ -183,7 +183,7 @@ def _judge_pair(row: Tried, wild: WildPoint) -> tuple[str, float, str]:
         other, its = _solved(row.solver, wild._replace(point=SamplePoint(contact, *place)))
         if whole is None or its is None:
             continue
-        changed, by = jump(wild, first, whole, other, its)
+        changed, by = jump(wild, (first, whole), (other, its))
         wrong, share, compared = wrong or changed, max(share, by), compared + 1
     return wrong, share, "" if compared else f"{first.status.word}: {_alike(first.reason)}"
 
@@ -212,7 +212,7 @@ def _refined(job: Job, points: int, seed: int) -> Iterator[Verdict]:
         if best is None:
             yield Verdict(refused=f"finer grid {exact.status.word}: {_alike(exact.reason)}")
             continue
-        ratios = error_ratios(wild, film, whole, exact, best)
+        ratios = error_ratios(wild, (film, whole), (exact, best))
         name, ratio = max(ratios.items(), key=lambda entry: entry[1])
         words = f"{name} is off by {ratio:.3g} times its stated error"
         yield Verdict(wild.label, wrong=words) if ratio > 3.0 else Verdict(f"{words} at {wild.label}", ratio)
@@ -344,7 +344,7 @@ def _border_problem(solver: ContactSolver, wild: WildPoint, low: float, high: fl
             high, last = middle, between
     if first[2] is None or last[2] is None:
         return "", 0.0
-    wrong, by = jump(wild, first[1], first[2], last[1], last[2])
+    wrong, by = jump(wild, (first[1], first[2]), (last[1], last[2]))
     return (f"{wrong} where the status changes at {low:.9g} N/m" if wrong else ""), by
 
 

@@ -260,7 +260,9 @@ def _values(scene: Scene, key: str, highest: float) -> tuple[list[float | int], 
         values = [own * factor for factor in (*COARSER, 1.0, *FINER) if own * factor <= longest]
         return list(values[:-1]), values[-1], own
     if key == "slices":
-        many = max([0, *(entry.slices for entry in scene.bearings), *(entry.slices for entry in scene.tapered)])
+        many = max(
+            [0, *(entry.slices for entry in scene.bearings), *(getattr(entry, "slices", 0) for entry in scene.located)]
+        )
         found = sorted({*SLICES[:-1], many, 2 * many - 1 if many > SLICES[-2] else SLICES[-1]})
         return ([], 0, 0) if not many else (list(found[:-1]), found[-1], many)
     top = changes.cutoff_of(scene)
