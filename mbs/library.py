@@ -245,7 +245,7 @@ def write_report(model: Model, path: str | Path) -> None:
     from mbs.report.examination import examined
     from mbs.report.scene_report import scene_report
 
-    found = examined(model, None, None)
+    found = examined(model, None, None, banded=True)
     write_page(path, scene_report(found, f"mbs.write_report(model, {Path(path).name!r})", []))
 
 

@@ -78,13 +78,15 @@ class ModesResult:
 
         return bands_of(self.model, self.balance, self.modes, highest)
 
-    def plot(self, highest: float | None = None) -> Figure:
+    def plot(self, highest: float | None = None, bands: ModeBands | None = None) -> Figure:
         """Figure that `mbs modes --plot` writes: frequencies, damping ratios and strain energy of the modes.
 
         Parameters
         ----------
         highest : float, optional
             Highest frequency that is drawn [Hz]; that of [linear] of the scene, else 10 kHz, if left out.
+        bands : ModeBands, optional
+            Bands of what is not known of the modes, told below them in place of numerics.
         """
         from mbs.output.modes_plot import modes_figure
         from mbs.output.result_text import above_lines, free_lines, kinds
@@ -95,7 +97,7 @@ class ModesResult:
         notes = [*free_lines(free, self.model.system), *above_lines(self.modes, swinging[~inside], highest)]
         notes += [f"{overdamped.size} overdamped motions not drawn"] if overdamped.size else []
         limit = min((entry.frequency for entry in self.errors), default=math.inf)
-        return modes_figure(self.model, self.modes, swinging[inside], limit, "; ".join(notes))
+        return modes_figure(self.model, self.modes, swinging[inside], limit, "; ".join(notes), bands)
 
 
 def modes(

@@ -57,7 +57,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     shown = swinging[found.frequency[swinging] <= highest]
     above = swinging[found.frequency[swinging] > highest]
     notes = [*free_lines(free, model.system), *above_lines(found, above, highest)]
-    figure = result.plot(highest) if arguments.plot else None
+    figure = result.plot(highest, bands) if arguments.plot else None
     outside, judged = outside_at(model, result.balance), Judged([("", result.findings)])
     lines = [
         *judged.first,

@@ -16,7 +16,7 @@ from mbs.analyses.reach import outside_at
 from mbs.analyses.soundness import Judged
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Looked
+from mbs.commands.common import Looked, with_bands
 from mbs.commands.sweep import read_speeds
 from mbs.planning.question import at_one_speed, over_speeds
 from mbs.report.campbell import read_result
@@ -27,7 +27,7 @@ from mbs.scene.choices import OPTIONS
 from mbs.scene.map_set import MapSet
 from mbs.settings import SweepRange
 
-_OPTIONS = (*(choice.name for choice in OPTIONS), "auto-tolerance", "result")
+_OPTIONS = (*(choice.name for choice in OPTIONS), "auto-tolerance", "bands", "result")
 
 
 class _Asked(NamedTuple):
@@ -42,7 +42,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Examine the scene and write the report; by default in this folder, with the name of the scene."""
     arguments.output = arguments.output or f"{Path(arguments.scene).stem}.html"
     looked: list[_Asked] = []
-    done = analysed(arguments, _asked, lambda asked: _examine(asked, looked), _looks_at)
+    done = analysed(arguments, _asked, lambda asked: _examine(asked, looked, with_bands(arguments, [])), _looks_at)
     asked = looked[-1]
     found = done.result
     saved = None if asked.saved is None else (Path(arguments.result).name, asked.saved)
@@ -61,6 +61,7 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
     """Read what is asked for; all problems at once."""
     problems: list[str] = []
     speeds, saved, cases = None, None, []
+    with_bands(arguments, problems)
     try:
         speeds = read_speeds(arguments.speed) if arguments.speed else None
     except InputError as error:
@@ -81,10 +82,10 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
     return _Asked(cases[0], speeds, saved)
 
 
-def _examine(asked: _Asked, looked: list[_Asked]) -> Examination:
+def _examine(asked: _Asked, looked: list[_Asked], banded: bool) -> Examination:
     """Examine the model; what was asked last is kept, with what `--auto` chose."""
     looked.append(asked)
-    return examined(asked.case.model, _maps(asked), asked.speeds, asked.saved is None, asked.case.subject)
+    return examined(asked.case.model, _maps(asked), asked.speeds, asked.saved is None, asked.case.subject, banded)
 
 
 def _maps(asked: _Asked) -> MapSet | None:

@@ -84,6 +84,8 @@ def _words(arguments: argparse.Namespace, scene: Scene, name: str, folder: Path)
         words += ["--auto-tolerance", arguments.auto_tolerance]
     if arguments.auto:
         words.append("--auto")
+    if arguments.bands is not None and name not in ("campbell", "runup"):
+        words += ["--bands", arguments.bands]
     check_outputs([Output("-o", folder / f"{name}.txt", TEXT)])
     # The figure of statics is one of rollers.
     figure = ["--plot", str(folder / f"{name}.png")] if name != "statics" or scene.bearings else []

@@ -21,8 +21,10 @@ from mbs.linearised.modes import Modes
 from mbs.linearised.shapes import AXIS, EDGE, JOINT, MARK, Skeleton
 from mbs.modal.records import Channel
 from mbs.modal.result import ModalFit
+from mbs.output.band_text import HEAD, bounds_text, value_text
 from mbs.output.page import BAND_WORDS, ESTIMATED, headed, shade, shade_handle
 from mbs.scene.assembly import Model
+from mbs.unknowns.of_modes import ModeBands
 
 _RPM = 30.0 / np.pi
 _MOST_LEVEL_LABELS = 12
@@ -37,7 +39,14 @@ _TOP = 104.0
 _ROUND_OFF = 1e-12
 
 
-def modes_figure(model: Model, found: Modes, shown: IntArray, limit: float = math.inf, words: str = "") -> Figure:
+def modes_figure(
+    model: Model,
+    found: Modes,
+    shown: IntArray,
+    limit: float = math.inf,
+    words: str = "",
+    unknown: ModeBands | None = None,
+) -> Figure:
     """Strain-energy shares of modes, with their numbers, frequencies and damping ratios.
 
     Parameters
@@ -52,6 +61,8 @@ def modes_figure(model: Model, found: Modes, shown: IntArray, limit: float = mat
         Frequency from which on the films are notably wrong [Hz]: modes from there on are shaded.
     words : str
         What is not drawn, below the axis.
+    unknown : ModeBands, optional
+        Bands of what is not known, told in place of numerics.
     """
     figure = headed(model, f"{written(model.scene.speed * _RPM)} rpm")
     panel = figure.subplots()
@@ -62,7 +73,7 @@ def modes_figure(model: Model, found: Modes, shown: IntArray, limit: float = mat
         panel.bar(places, share, bottom=bottom, label=part, color=colour, hatch=hatch, edgecolor="w", lw=0.0)
         bottom += share
     level = places.size <= _MOST_LEVEL_LABELS
-    labels = [_label(found, int(mode), level) for mode in shown]
+    labels = [_label(found, int(mode), level, unknown) for mode in shown]
     every = math.ceil(max(places.size, 1) / _MOST_LABELS)
     panel.set_xticks(places[::every], labels[::every], fontsize=7 if level else 6.5, rotation=0 if level else 90)
     panel.set_xlim(-0.8, max(places.size, 1) - 0.2)
@@ -75,7 +86,8 @@ def modes_figure(model: Model, found: Modes, shown: IntArray, limit: float = mat
         shade(panel, quick[0] - 0.5, quick[-1] + 0.5, bottom=100.0 / _TOP)
         estimated = ESTIMATED.replace(" of the films ", "\nof the films ")
         shades = [shade_handle(f"{estimated}\n(from {limit:.4g} Hz on)")]
-    bands = f", ±: {BAND_WORDS}" if level and found.bands is not None else ""
+    bands = f", ±: {BAND_WORDS}" if level and found.bands is not None and unknown is None else ""
+    bands = f", each with {HEAD}" if level and unknown is not None else bands
     panel.set_xlabel(f"mode: frequency |eigenvalue|/(2π), damping ratio ζ{bands}" + (f"\n{words}" if words else ""))
     panel.set_ylabel("part of the strain energy, %")
     handles = panel.get_legend_handles_labels()[0] + shades
@@ -83,8 +95,16 @@ def modes_figure(model: Model, found: Modes, shown: IntArray, limit: float = mat
     return figure
 
 
-def _label(modes: Modes, mode: int, level: bool) -> str:
-    """Number, frequency and damping ratio of a mode."""
+def _label(modes: Modes, mode: int, level: bool, unknown: ModeBands | None) -> str:
+    """Number, frequency and damping ratio of a mode, with what is not known of them where there is room."""
+    place = None if unknown is None or not level else unknown.place(mode)
+    if unknown is not None and place is not None:
+        frequency, damping = unknown.frequency, unknown.damping_ratio
+        values = f"{value_text(frequency, place)} Hz", f"ζ {value_text(damping, place)}"
+        bounds = [
+            bounds_text(band, place).replace(" unsure", "").replace(" to ", " to\n") for band in (frequency, damping)
+        ]
+        return "\n".join((f"{mode + 1}:", values[0], bounds[0], values[1], bounds[1]))
     ratio = float(modes.damping_ratio[mode])
     parts = [f"{mode + 1}:", f"{modes.frequency[mode]:.5g} Hz", f"ζ {ratio if abs(ratio) > _ROUND_OFF else 0.0:.2g}"]
     if level and modes.bands is not None:

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError
 from ehdmaps.figures import COLOURS
 from ehdmaps.netcdf_structure import DAMAGE, structure_problem
@@ -20,6 +20,7 @@ from ehdmaps.report.page import Markup, joined, table, tag
 from ehdmaps.units import RPM
 from mbs.analyses.modes import ModesResult
 from mbs.linearised.sweep_result import Sweep
+from mbs.output.band_text import about_lines, bounds_text, lost_lines, term_words, value_text
 from mbs.output.files import RESULT
 from mbs.output.model_text import band_lines, clean, film_law_line, film_lines, free_words
 from mbs.output.reduction_text import reduction_lines
@@ -30,7 +31,7 @@ MOST = 60
 """Modes that are listed."""
 
 
-def mode_table(found: ModesResult, highest: float) -> Markup:
+def mode_table(found: ModesResult, highest: float, banded: bool = False) -> Markup:
     """Return the oscillating modes up to a frequency.
 
     Parameters
@@ -39,10 +40,14 @@ def mode_table(found: ModesResult, highest: float) -> Markup:
         The modes.
     highest : float
         Highest frequency that is listed [Hz].
+    banded : bool
+        Whether bands of what is not known stand beside them.
     """
     all_modes = found.modes
     free, creeping, swinging = kinds(all_modes)
     listed = swinging[all_modes.frequency[swinging] <= highest][:MOST]
+    if banded:
+        return _banded_table(found, listed, highest)
     bands, law = all_modes.bands, all_modes.film_law
     rows = [
         (
@@ -89,6 +94,31 @@ def mode_table(found: ModesResult, highest: float) -> Markup:
         if listed.size
         else tag("p", f"No mode oscillates below {shown(HERTZ, highest)}."),
         *(tag("p", remark, class_="says") for remark in remarks if remark),
+    )
+
+
+def _banded_table(found: ModesResult, listed: IntArray, highest: float) -> Markup:
+    """The modes with what is not known of them, and what decides that."""
+    bands, rows = found.bands_to(highest), []
+    for k in listed.tolist():
+        place, cells = bands.place(k), []
+        for band, value in (
+            (bands.frequency, found.modes.frequency[k]),
+            (bands.damping_ratio, found.modes.damping_ratio[k]),
+        ):
+            cells += [number(float(value), 3) if place is None else value_text(band, place)]
+            cells += ["-" if place is None else bounds_text(band, place)]
+        decided = "-" if place is None else term_words(bands.frequency.largest(place))
+        rows.append((f"{k + 1}", *cells, decided, share_words(found.modes, k)))
+    heads = ("mode", "frequency, Hz", "90 %", "damping ratio", "90 %", "frequency decided by", "strain energy")
+    lines = [*about_lines(found.model.scene), *lost_lines(bands.frequency, [f"mode {k + 1}" for k in bands.chosen])]
+    if not listed.size:
+        return tag("p", f"No mode oscillates below {shown(HERTZ, highest)}.")
+    words = "Complex modes; the frequency is |eigenvalue|/(2π); 90 % of what is not known of the machine"
+    return joined(
+        table(heads, rows, words, (0, len(heads) - 2, len(heads) - 1)),
+        *(tag("p", f"{line.strip()}.", class_="says") for line in lines),
+        *(tag("p", line, class_="says") for line in film_lines(found.errors, found.modes.frequency[listed])),
     )
 
 

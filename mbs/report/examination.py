@@ -45,6 +45,8 @@ class Examination:
         The maps of its law.
     budget : Trade or str
         Error budget of the machine, or why there is none; empty where it was not looked for.
+    banded : bool
+        Whether bands of what is not known stand beside modes.
     """
 
     statics: StaticsResult
@@ -52,6 +54,7 @@ class Examination:
     sweep: SweepResult | str
     maps: MapSet | None
     budget: Trade | str = ""
+    banded: bool = False
 
     @property
     def findings(self) -> tuple[Finding, ...]:
@@ -72,6 +75,7 @@ def examined(
     speeds: SweepRange | None,
     swept: bool = True,
     subject: Subject | None = None,
+    banded: bool = False,
 ) -> Examination:
     """Find it.
 
@@ -87,6 +91,8 @@ def examined(
         Whether there is a sweep at all.
     subject : Subject, optional
         The scene with its law, of which there is an error budget; none if left out.
+    banded : bool
+        Whether bands of what is not known stand beside modes.
 
     Raises
     ------
@@ -102,6 +108,7 @@ def examined(
         _or_reason(lambda: _sweep(model, speeds)) if swept else "",
         maps,
         budget,
+        banded and model.scene.has_bearings,
     )
 
 

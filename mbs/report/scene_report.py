@@ -82,7 +82,7 @@ def _modes(examination: Examination) -> Markup:
     """The modes, or why there are none."""
     if isinstance(examination.modes, str):
         return tag("p", f"There are no modes: {examination.modes}", class_="warning")
-    return mode_table(examination.modes, highest_of(examination.model.scene))
+    return mode_table(examination.modes, highest_of(examination.model.scene), examination.banded)
 
 
 def _campbell(examination: Examination, saved: tuple[str, xr.Dataset] | None) -> Markup:
