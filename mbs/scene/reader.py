@@ -30,7 +30,7 @@ from mbs.scene.gears import spins_by_teeth
 from mbs.scene.matrices import MatrixSpec, read_spring
 from mbs.scene.scene import Scene
 from mbs.scene.shafts.standing import mounts, read_gravity
-from mbs.scene.specs import ORIGIN, BearingSpec, BodySpec, FlexibleSpec, RigidSpec, ShaftSpec
+from mbs.scene.specs import ORIGIN, BodySpec, FlexibleSpec, RigidSpec, ShaftSpec
 from mbs.scene.turning import read_excitation, read_unbalance
 from mbs.settings import HIGHEST, MOST_SPEEDS, CampbellSettings, RunUp, Settings, SweepRange
 
@@ -244,7 +244,7 @@ class _Reader:
         excitations = self._all("excitations", read_excitation)
         elements = [entry for kind in kinds.KINDS if kind.key for entry in self._all(kind.key, kind.read)]
         elements += [spring for spring in springs if isinstance(spring, MatrixSpec)]
-        if any(isinstance(entry, BearingSpec) and entry.between_ribs is not None for entry in elements):
+        if any(getattr(entry, "between_ribs", None) is not None for entry in elements):
             from mbs.scene.locating.ribs import held_by_ribs
 
             elements = held_by_ribs(elements, bodies, top.problems)

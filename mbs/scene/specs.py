@@ -235,8 +235,11 @@ class BearingSpec:
         Clearance of a roller in its pocket of the cage [m]; None for rollers that roll without slip.
     between_ribs : TaperedSpec or None
         The same bearing as ribs on both rings hold it, for a shaft that moves along x; None without such ribs.
+    of_points : bool
+        Whether its contacts are points, see `LocatingSpec`; they are lines.
     """
 
+    of_points: ClassVar[bool] = False
     name: str
     inner: str
     outer: str

@@ -13,7 +13,7 @@ from typing import Any
 
 from mbs.scene.changes import with_bearing
 from mbs.scene.scene import Scene
-from mbs.scene.specs import BallSpec, BearingSpec, LocatingSpec
+from mbs.scene.specs import BearingSpec, LocatingSpec
 from mbs.unknowns.statement import tolerance_of
 from mbs.unknowns.unknown import Unknown, looks_of
 
@@ -53,7 +53,7 @@ def _parts(entry: BearingSpec | LocatingSpec, share: float) -> Iterator[tuple[st
             key, size = name.replace(" ", "_"), share * float(found[1]) / 100.0
             ends = [{key: getattr(geometry, key) * (1.0 + sign * size)} for sign in (1.0, -1.0)]
             yield name, f"+-{100.0 * size:.3g} %", ends[:1] if name in _EVEN else ends
-    if isinstance(entry, BallSpec):
+    if entry.of_points:
         for side in ("inner", "outer"):
             key = f"{side}_conformity"
             value = getattr(geometry, key)

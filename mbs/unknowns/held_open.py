@@ -33,7 +33,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from mbs.scene.changes import warmed, with_bearing, with_clearance_of, with_loads
 from mbs.scene.fields import DEGREE, MICROMETRE
 from mbs.scene.scene import Scene
-from mbs.scene.specs import BallSpec, BearingSpec, LocatingSpec
+from mbs.scene.specs import BearingSpec, LocatingSpec
 from mbs.unknowns.geometry import geometries, profiles
 from mbs.unknowns.statement import tolerance_of
 from mbs.unknowns.unknown import Unknown, looks_of
@@ -86,7 +86,7 @@ def _clearances(scene: Scene) -> Iterator[Unknown]:
         elif reach is not None and reach.taken != STATED:
             (least, largest), why = reach.reach, reach.why
             held = f"{1e6 * least:.4g} to {MICROMETRE.text(largest)}"
-        elif value == 0.0 and isinstance(entry, BallSpec) and entry.geometry.contact_angle:
+        elif value == 0.0 and getattr(entry.geometry, "contact_angle", 0.0):
             why = "not stated: set when it is mounted, by springs and axial offsets"
             yield Unknown(name, "clearance", "0 um, held", why)
             continue
@@ -227,7 +227,7 @@ def _at(change: Callable[..., Scene], *values: object) -> Callable[[], Scene]:
 
 def elements_of(entry: BearingSpec | LocatingSpec) -> int:
     """Number of rolling elements of a bearing."""
-    count: int = entry.geometry.balls if isinstance(entry, BallSpec) else entry.geometry.rollers
+    count: int = entry.geometry.rolling_elements
     return count
 
 

@@ -130,6 +130,12 @@ class Named:
     if TYPE_CHECKING:
         name: str
         label: str | None
+        rollers: int
+
+    @property
+    def rolling_elements(self) -> int:
+        """Number of its rolling elements."""
+        return self.rollers
 
     @property
     def title(self) -> str:

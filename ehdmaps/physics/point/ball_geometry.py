@@ -94,6 +94,11 @@ class BallGeometry(Named):
             raise InputError(problems)
 
     @property
+    def rolling_elements(self) -> int:
+        """Number of its balls."""
+        return self.balls
+
+    @property
     def gamma(self) -> float:
         """Ratio Dw cos(alpha)/d_m, by the nominal contact angle."""
         return self.ball_diameter * math.cos(self.contact_angle) / self.pitch_diameter
