@@ -5,6 +5,7 @@ Barus oil whose viscosity falls as exp(-beta T), cold walls, conduction across t
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import tomllib
 from collections.abc import Callable
@@ -24,6 +25,9 @@ from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.physics.heat import heat_by_factor, inlet_heat_factor, thermal_loading, viscosity_slope
 from ehdmaps.physics.isotherm import LINEAR, Isotherm
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.point.ellipse import Ellipse, curvature_ratio
+from ehdmaps.physics.point.inlet_heat import point_heats
 from tests.cases.laws import CONTACTS, OIL
 
 BETA = 0.04
@@ -193,3 +197,22 @@ class TestRule:
         compliance = np.array([line["film_compliance"] for line in kept])
         wrong = np.abs(heat.compliance(fall, one) / fall / compliance - 1.0)
         assert np.all(wrong[loaded] < heat.loss_error[loaded])
+
+    def test_points_by_a_reference_of_its_own(self):
+        """`tests.benchmarks.warm_point`, two-dimensional, with warm walls, convection and heat of compression."""
+        points = tomllib.loads((self.REFERENCES / "warm_points.toml").read_text(encoding="utf-8"))["points"]
+        ellipses = [point for point in points if point["kappa"] >= 3.0]
+        assert {point["kappa"] for point in ellipses} == {4.5, 8.0}
+        for point in points:
+            if point["kappa"] == 0.0:  # the reference itself, against the rule that the line solver bears out
+                assert inlet_heat_factor(point["M"], point["QL"]) == pytest.approx(point["central_film"], rel=0.015)
+                continue
+            radius, modulus = 8e-3, 230.769e9
+            ellipse = Ellipse(radius, radius / curvature_ratio(point["kappa"]), modulus)
+            oil = dataclasses.replace(Lubricant.named(point["oil"]), thermal_conductivity=0.134)
+            at = (np.array([value]) for value in (point["load"], point["speed"], point["celsius"] + 273.15))
+            heat = point_heats(ellipse, oil, *at).of(0)
+            bound = 0.025 if point["kappa"] >= 3.0 else heat.film_error
+            assert heat.factor == pytest.approx(point["central_film"], rel=bound)
+            assert heat.offset_factor == pytest.approx(point["film_offset"], rel=bound)
+            assert heat.film_error > abs(heat.factor / point["central_film"] - 1.0)
