@@ -28,91 +28,69 @@ GRID_KEYS = ("density", "inlet_length", "tolerance")
 
 
 @dataclass(frozen=True)
-class Number:
-    """A key that takes a bare number within [low, high]."""
+class Key:
+    """A key of a solver: it takes one of some words, or a number within limits.
+
+    Attributes
+    ----------
+    key : str
+        Its name in [solver].
+    meaning : str
+        What it says.
+    limits : (float, float)
+        The least and the largest number.
+    words : tuple of str
+        The words it takes; empty for a number.
+    whole : bool
+        Whether the number is a whole one.
+    unit : str
+        SI unit of a number that may be stated with its unit, as a text; a bare number is in SI.
+    display : Display or None
+        How a message shows a number with a unit; None for a number without one.
+    """
 
     key: str
-    low: float
-    high: float
     meaning: str
-
-    def read(self, table: Table) -> Any:
-        """Return the value, or None if absent or wrong."""
-        return table.number(self.key, self.low, self.high)
-
-
-@dataclass(frozen=True)
-class Word:
-    """A key that takes one of some words."""
-
-    key: str
-    allowed: tuple[str, ...]
-    meaning: str
-
-    def read(self, table: Table) -> Any:
-        """Return the word, or None if absent or wrong."""
-        return table.choice(self.key, self.allowed)
-
-
-@dataclass(frozen=True)
-class Whole:
-    """A key that takes a whole number within [low, high]."""
-
-    key: str
-    low: int
-    high: int
-    meaning: str
-
-    def read(self, table: Table) -> Any:
-        """Return the number, or None if absent or wrong."""
-        return table.integer(self.key, self.low, self.high)
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """A key that takes a number with its unit, or a bare one in SI, within [low, high]."""
-
-    key: str
-    unit: str
-    low: float
-    high: float
-    display: Display
-    meaning: str
+    limits: tuple[float, float] = (0.0, 0.0)
+    words: tuple[str, ...] = ()
+    whole: bool = False
+    unit: str = ""
+    display: Display | None = None
 
     def read(self, table: Table) -> Any:
         """Return the value in SI, or None if absent or wrong."""
-        if isinstance(table.get(self.key), str):
-            return table.quantity(self.key, self.unit, self.low, self.high, self.display)
-        return table.number(self.key, self.low, self.high)
+        low, high = self.limits
+        if self.words:
+            return table.choice(self.key, self.words)
+        if self.whole:
+            return table.integer(self.key, int(low), int(high))
+        if self.display and isinstance(table.get(self.key), str):
+            return table.quantity(self.key, self.unit, low, high, self.display)
+        return table.number(self.key, low, high)
 
 
+_ASSUMED = "the default is an assumption"
 SHEAR_OPTIONS = (
-    Word("shear", tuple(SHEARS), "law of the shear stress, by the formulas of `ehdmaps.physics.rheology`"),
-    Quantity(
+    Key("shear", "law of the shear stress, by the formulas of `ehdmaps.physics.rheology`", words=tuple(SHEARS)),
+    Key(
         "shear_stress",
-        "Pa",
-        *SHEAR_LIMITS["shear_stress"],
-        Display("MPa", 1e-6),
-        "stress tau0 of that law, or its bound without pressure; the default is an assumption",
+        f"stress tau0 of that law, or its bound without pressure; {_ASSUMED}",
+        SHEAR_LIMITS["shear_stress"],
+        unit="Pa",
+        display=Display("MPa", 1e-6),
     ),
-    Number(
-        "limiting_ratio",
-        *SHEAR_LIMITS["limiting_ratio"],
-        "rise of the limiting stress with pressure; the default is an assumption",
-    ),
-    Number(
-        "carreau_exponent",
-        *SHEAR_LIMITS["carreau_exponent"],
-        "exponent n of Carreau's law; the default is an assumption",
-    ),
-    Number(
-        "slide_to_roll", -2.0, 2.0, "(u_upper - u_lower)/u, difference of the surface speeds over the entrainment speed"
+    Key("limiting_ratio", f"rise of the limiting stress with pressure; {_ASSUMED}", SHEAR_LIMITS["limiting_ratio"]),
+    Key("carreau_exponent", f"exponent n of Carreau's law; {_ASSUMED}", SHEAR_LIMITS["carreau_exponent"]),
+    Key(
+        "slide_to_roll",
+        "(u_upper - u_lower)/u, difference of the surface speeds over the entrainment speed",
+        (-2.0, 2.0),
     ),
 )
 """Keys of the solvers that know laws of shear: the same words, limits and meanings for each."""
 
 
-def physics_option(*words: str) -> Word:
+def physics_option(*words: str) -> Key:
     """The key that says what a solver knows of heat.
 
     Parameters
@@ -120,7 +98,7 @@ def physics_option(*words: str) -> Word:
     *words : str
         What it may know, of `ehdmaps.physics.heat.PHYSICS`.
     """
-    return Word("physics", words, "heat in the films, see [films with heat](reference_ehdmaps.md#films-with-heat)")
+    return Key("physics", "heat in the films, see [films with heat](reference_ehdmaps.md#films-with-heat)", words=words)
 
 
 def _nothing() -> tuple[str, ...]:
@@ -145,7 +123,7 @@ class SolverEntry:
         Whether it works in case folders, which it can keep, and has fields of the film.
     """
 
-    options: tuple[Number | Whole | Word | Quantity, ...]
+    options: tuple[Key, ...]
     build: Callable[..., ContactSolver]
     missing: Callable[[], tuple[str, ...]] = _nothing
     keeps_cases: bool = False
@@ -190,54 +168,39 @@ def _openfoam_missing() -> tuple[str, ...]:
     return missing()
 
 
+_FILM_FORMULAS = ("moes", "dowson-toyoda", "pan-hamrock")
+_FLOWS = ("thin_film", "full_stress")
+_INLET = "length of the inlet over sqrt(2 h R)"
+_DENSITY = "cells per e-fold of distance from inlet, exit and spike; 6.5: about 100 a contact"
+_TOLERANCE = "tolerance of Newton's last step, whose convergence is quadratic"
+_FLOW = "stress of thin films, or all of it with the pressure across the film"
+_COLUMNS = "cells along the film; even, as half of them are the grid of the error estimate"
+_START = "start of a point: its Reynolds solution, which also places the cells, or the dry contact"
+_TIMEOUT = "seconds after which a point, all grids together, is stopped and failed"
 SOLVERS: Mapping[str, SolverEntry] = {
     "hertz": SolverEntry((), _hertz),
-    "formula": SolverEntry(
-        (Word("film_formula", ("moes", "dowson-toyoda", "pan-hamrock"), "formula of the central film"),), _formula
-    ),
+    "formula": SolverEntry((Key("film_formula", "formula of the central film", words=_FILM_FORMULAS),), _formula),
     "reynolds": SolverEntry(
         (
-            Number(
-                "density",
-                *SETTING_LIMITS["density"],
-                "cells per e-fold of distance from inlet, exit and spike; 6.5: about 100 a contact",
-            ),
-            Number("inlet_length", *SETTING_LIMITS["inlet_length"], "length of the inlet over sqrt(2 h R)"),
-            Number(
-                "tolerance",
-                *SETTING_LIMITS["tolerance"],
-                "tolerance of Newton's last step, whose convergence is quadratic",
-            ),
+            Key("density", _DENSITY, SETTING_LIMITS["density"]),
+            Key("inlet_length", _INLET, SETTING_LIMITS["inlet_length"]),
+            Key("tolerance", _TOLERANCE, SETTING_LIMITS["tolerance"]),
             physics_option(*PHYSICS),
             *SHEAR_OPTIONS,
-            Word(
-                "films",
-                (SOLVED, TABLE),
-                "films are solved, or read from the film table where it serves",
-            ),
+            Key("films", "films are solved, or read from the film table where it serves", words=(SOLVED, TABLE)),
         ),
         _reynolds,
     ),
     "openfoam": SolverEntry(
         (
-            Word(
-                "flow",
-                ("thin_film", "full_stress"),
-                "stress of thin films, or all of it with the pressure across the film",
-            ),
-            Whole(
-                "columns", 40, 4000, "cells along the film; even, as half of them are the grid of the error estimate"
-            ),
-            Whole("rows", 4, 64, "cells across the film; even; 24 for pictures"),
+            Key("flow", _FLOW, words=_FLOWS),
+            Key("columns", _COLUMNS, (40, 4000), whole=True),
+            Key("rows", "cells across the film; even; 24 for pictures", (4, 64), whole=True),
             physics_option(ISOTHERMAL, THERMAL),
             *SHEAR_OPTIONS,
-            Number("inlet_length", 5.0, 1e5, "length of the inlet over sqrt(2 h R)"),
-            Word(
-                "start",
-                ("reynolds", "hertz"),
-                "start of a point: its Reynolds solution, which also places the cells, or the dry contact",
-            ),
-            Number("timeout", 1.0, 1e6, "seconds after which a point, all grids together, is stopped and failed"),
+            Key("inlet_length", _INLET, (5.0, 1e5)),
+            Key("start", _START, words=("reynolds", "hertz")),
+            Key("timeout", _TIMEOUT, (1.0, 1e6)),
         ),
         _openfoam,
         missing=_openfoam_missing,
@@ -346,8 +309,7 @@ def takes(name: str, key: str, word: str) -> bool:
     word : str
         The word.
     """
-    words = [option.allowed for option in SOLVERS[name].options if isinstance(option, Word) and option.key == key]
-    return any(word in allowed for allowed in words)
+    return any(word in option.words for option in SOLVERS[name].options if option.key == key)
 
 
 def carried(options: Mapping[str, Any], name: str) -> dict[str, Any]:
