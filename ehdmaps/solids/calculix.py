@@ -56,7 +56,7 @@ def version(purpose: str) -> str:
     return match[1] if match else "unknown"
 
 
-def run_deck(text: str, folder: Path, job: str, purpose: str, coarser: str = "take larger elements") -> None:
+def run_deck(text: str, folder: Path, job: str, purpose: str) -> None:
     """Run CalculiX on a deck in a folder; its files JOB.dat, JOB.frd and so on are there after.
 
     Parameters
@@ -69,8 +69,6 @@ def run_deck(text: str, folder: Path, job: str, purpose: str, coarser: str = "ta
         Name of the files without ending.
     purpose : str
         What needs CalculiX, for the message.
-    coarser : str
-        What to do about a run that takes too long.
 
     Raises
     ------
@@ -96,7 +94,9 @@ def run_deck(text: str, folder: Path, job: str, purpose: str, coarser: str = "ta
                 env={**os.environ, "OMP_NUM_THREADS": "1"},
             )
     except subprocess.TimeoutExpired as error:
-        raise AnalysisError(f"CalculiX: not done after {LONGEST_RUN:.0f} s; {coarser}; {_tail(log)}") from error
+        raise AnalysisError(
+            f"CalculiX: not done after {LONGEST_RUN:.0f} s; take larger elements; {_tail(log)}"
+        ) from error
     except OSError as error:
         raise AnalysisError(f"CalculiX: {command[0]} cannot be started: {error.strerror}") from error
     if result.returncode != 0:

@@ -42,16 +42,12 @@ Needs = Callable[[Scene], Iterable[str]]
 """Tells what a scene lacks for an analysis."""
 
 
-def load_model(arguments: argparse.Namespace, kind: Kind = RESULT, needs: Needs | None = None) -> Model:
+def load_model(arguments: argparse.Namespace) -> Model:
     """Read scene, law or map, and clearance of a command that takes one of each; all problems at once.
 
     Parameters
     ----------
     arguments : argparse.Namespace
-        The same as for `load_cases`.
-    kind : Kind
-        Kind of file that -o writes.
-    needs : callable, optional
         The same as for `load_cases`.
 
     Raises
@@ -59,7 +55,7 @@ def load_model(arguments: argparse.Namespace, kind: Kind = RESULT, needs: Needs 
     InputError
         With every problem.
     """
-    return load_cases(arguments, several=False, kind=kind, needs=needs)[0].model
+    return load_cases(arguments, several=False)[0].model
 
 
 def load_cases(

@@ -32,7 +32,6 @@ def signal_panels(
     figure: FigureBase,
     records: Sequence[TimeRecord],
     spectra: Sequence[Sequence[Sequence[AmplitudeSpectrum]]] = (),
-    labelled: bool = False,
 ) -> list[Axes]:
     """Draw up to `MOST_SENSORS` sensors into a figure or a part of one; the panels over time are returned.
 
@@ -44,8 +43,6 @@ def signal_panels(
         A run each, of the same channels.
     spectra : sequence of sequence of sequence of AmplitudeSpectrum
         Spectra about each speed, of each run, of each sensor; a column a speed.
-    labelled : bool
-        Whether a legend says which colour is which run, also of one alone.
     """
     sensors = records[0].sensors[:MOST_SENSORS]
     rows, columns = len(sensors), 1 + len(spectra)
@@ -81,13 +78,13 @@ def signal_panels(
         for panel, above in zip(axes[row], axes[0], strict=True):
             panel.sharex(above)
     left_out = len(records[0].sensors) - rows
-    if records[1:] or labelled or left_out:
+    if records[1:] or left_out:
         handles = [
             Line2D([], [], color=colour, lw=1.2, label=typeset(record.label))
             for record, colour in zip(records, COLOURS, strict=False)
         ]
         figure.legend(
-            handles=handles if records[1:] or labelled else [],
+            handles=handles if records[1:] else [],
             title=f"{left_out} more sensors not drawn" if left_out else None,
             title_fontsize=7,
             loc="outside lower center",

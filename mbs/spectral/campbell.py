@@ -141,7 +141,6 @@ def run_up_spectra(
     highest: float = HIGHEST,
     window: float | None = None,
     orders: Sequence[float] = (),
-    lowest_speed: float | None = None,
 ) -> RunUpSpectra:
     """Campbell diagram, order spectra, and the given orders with their peaks.
 
@@ -157,8 +156,6 @@ def run_up_spectra(
         Length of the windows of the Campbell diagram [s].
     orders : sequence of float
         Orders to be followed.
-    lowest_speed : float, optional
-        Lowest speed of the order domain [rad/s]; a tenth of the highest speed if left out.
 
     Raises
     ------
@@ -166,7 +163,7 @@ def run_up_spectra(
         If the run makes no ramp, or window, band or orders do not fit it.
     """
     diagram = campbell(run, reference, highest, window, max(orders, default=None))
-    turned = angle_signal(run.ramp(), highest, lowest_speed)
+    turned = angle_signal(run.ramp(), highest)
     tracks = track_orders(turned, orders) if orders else None
     peaks = order_peaks(tracks, reference) if tracks else ()
     return RunUpSpectra(diagram, order_spectra(turned), tracks, peaks)

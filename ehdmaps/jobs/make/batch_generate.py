@@ -192,27 +192,25 @@ def batch_path(batch: Batch, folder: Path) -> Path:
     return folder / f"{batch.name}.batch"
 
 
-def make_folder(folder: Path, option: str = "-o") -> None:
+def make_folder(folder: Path) -> None:
     """Make the folder of the maps, and those that it lies in, where they are not there.
 
     Parameters
     ----------
     folder : Path
-        The folder.
-    option : str
-        That names it, for messages.
+        The folder, which -o names.
 
     Raises
     ------
     InputError
         If it cannot be made, or something else stands there.
     """
-    if problem := folder_problem(folder, option):
+    if problem := folder_problem(folder, "-o"):
         raise InputError(problem)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"{option}: got {folder}, which cannot be made ({error.strerror}); {_FOLDER}") from error
+        raise InputError(f"-o: got {folder}, which cannot be made ({error.strerror}); {_FOLDER}") from error
 
 
 def folder_problem(folder: Path, option: str) -> str:
