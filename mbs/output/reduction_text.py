@@ -30,8 +30,9 @@ def reduction_lines(system: System, frequency: FloatArray, ratio: FloatArray, pa
         return []
     lines = []
     if part is not None and np.isfinite(frequency).any():
-        sizes = np.abs(np.array(part)) / np.array([frequency, ratio])
-        words = [_largest(size, frequency) for size in np.where(np.array([frequency, ratio]) > ROUND_OFF, sizes, 0.0)]
+        values = np.array([frequency, ratio])
+        known = (values > ROUND_OFF) & np.isfinite(frequency)  # a motion without a frequency has a damping ratio of one
+        words = [_largest(size, frequency) for size in np.where(known, np.abs(np.array(part)) / values, 0.0)]
         lines.append(
             f"  reduction: without modes of bodies above {HERTZ.text(cut)}, which change frequencies by up to "
             f"{words[0]}, damping ratios by up to {words[1]}"
