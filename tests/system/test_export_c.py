@@ -280,9 +280,9 @@ def test_prefix_and_cplusplus(small_map, tmp_path, capsys):
 
 @pytest.fixture(scope="module")
 def corner(tmp_path_factory):
-    """A map without the heaviest loads at its highest speed and lowest temperature."""
-    path = tmp_path_factory.mktemp("corner") / "map.nc"
-    EHDMap(with_holes(dataset_of(), (0, slice(13, None), 3, 0))).dataset.to_netcdf(path)
+    """A map without the heaviest loads at its highest speed and lowest temperature; three temperatures, four speeds."""
+    path, whole = tmp_path_factory.mktemp("corner") / "map.nc", dataset_of(temperatures=(313.15, 328.15, 343.15))
+    EHDMap(with_holes(whole, (0, slice(13, None), 3, 0))).dataset.to_netcdf(path)
     return path
 
 

@@ -7,9 +7,12 @@ import dataclasses
 import numpy as np
 import pytest
 
+import ehdmaps
+from ehdmaps.jobs.job import Job
 from ehdmaps.maps.contact_curve import ContactCurve
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.oil_layer import oil_layer
+from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.films import rolling_film_damping
 from ehdmaps.physics.oil_supply import FLOODED, RIGID_FLOW, OilSupply, compliance_ratio, damping_ratio, film_ratio
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD, ValleyField
@@ -209,3 +212,19 @@ def test_films_with_memory_stand_on_the_layered_law():
         new, _, state = memory.advance(state, following, 1e-5)
         work += 0.5 * (new + load) * (following - before) if i >= 300 else 0.0
     assert np.all(work > 0.0)
+
+
+def test_the_flow_of_a_map_along_loads_is_that_of_its_contact():
+    """Whatever was asked before, a layer is fed as `RollingFilm.flow` says; a spline over a tenth of ln(w): 1e-4."""
+    job = Job.build(
+        bearing=BearingGeometry.named("NU308"), lubricant=OIL, loads=np.geomspace(2e3, 4e5, 5),
+        entrainment_speeds=(0.5, 3.0), temperatures=(320.0, 345.0), law_check=0, name="nu308",
+    )  # fmt: skip
+    flows = ehdmaps.EHDMap(ehdmaps.generate(job)).rolling_film
+    speeds, kelvins, load = np.array([0.7, 2.0]), np.array([325.0, 340.0]), 3.1e4
+    first = np.full((2, 2), 2.5e3)
+    for own in (speeds, speeds, speeds[::-1]):
+        for contact in ("inner", "outer"):
+            found = np.exp(flows.flow_film(contact, first, own, kelvins).at(np.full((1, 2, 2), np.log(load)))[0][0])
+            wanted = [[float(flows.flow(contact, load, u, T)) for T in kelvins] for u in own]
+            np.testing.assert_allclose(found, wanted, rtol=1e-4)
