@@ -5,11 +5,11 @@
 `thermal`              fits and the clearance that they leave, the state in operation, the balance of heat
 `laws`                 contact laws of rollers: Hertz, constant, points, film formula; their data for C
 `films`                pressure, films and rolling force at a load: dry, by formula, by map
-`slice_table`          a law at one speed as a table that slices read: its kinds and numbers
 `speed_tables`         tables of a law over the speed of a run
-`cylinder`             structs and functions of a cylindrical bearing in C
+`cylinder`             structs and functions of a cylindrical bearing in C; a law at one speed as a table
 `force_at_point`       the force at one speed, temperature and centrifugal load; loads of the rollers
-`bearing_force`        the force element, with films at once or in time, its energy and the moment on its cage
+`bearing_force`        the force element, with films at once or in time
+`contact_energy`       energy of its contacts, what changes of the speed bring in, the moment on its cage
 `roller_spin`          how fast rollers turn in the clearance of their pockets
 `roller_contacts`      rollers as bodies between two contacts
 `bearing_element`      a bearing in a system, with massless rollers

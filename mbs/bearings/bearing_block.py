@@ -16,7 +16,7 @@ import numpy as np
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.kernel.library import checked, function
 from ehdmaps.kernel.record import Record, integers, numbers
-from mbs.bearings import slice_table as table
+from mbs.bearings import cylinder as table
 from mbs.bearings.cylinder import CylinderLaw
 from mbs.bearings.rings import (
     CourseRecord,

@@ -20,7 +20,8 @@ from ehdmaps.errors import InputError
 from ehdmaps.physics.hertz import LINE_LIMIT, max_pressure
 from ehdmaps.physics.solids import STEEL
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_force import NO_COUPLED_MEMORY, BearingForce, brought_by_speed, cage_moment, energy_at_rest
+from mbs.bearings.bearing_force import NO_COUPLED_MEMORY, BearingForce
+from mbs.bearings.contact_energy import brought_by_speed, cage_moment, energy_at_rest
 from mbs.bearings.cylinder import Arrays
 from mbs.bearings.films import DryContacts, FilmSource
 from mbs.bearings.force_at_point import RollerLoads
@@ -385,7 +386,7 @@ class BearingElement(RingElement):
         return energy + 0.5 * self.bearing.slice_length * float(np.sum((w @ coupling) * w))
 
     def brought_by_speed(self, displacements: FloatArray, operations: Sequence[Operation]) -> float:
-        """Energy that changes of the speed brought into its films, see `mbs.bearings.bearing_force`."""
+        """Energy that changes of the speed brought into its films, see `mbs.bearings.contact_energy`."""
         conditions = [(self.entrainment_speed(op), self.temperature, self.centrifugal_load(op)) for op in operations]
         if self.bearing.coupled:
 

@@ -1,6 +1,10 @@
 """Structs and functions of bearings with cylindrical rollers in C, see `ehdmaps.kernel`.
 
 `Arrays` holds what C reads of one bearing, and its work space; `mbs.bearings.force_at_point` calls it.
+
+A law at one speed, temperature and centrifugal load is a table of cells, which a bearing reads in nanoseconds. It is
+made in C, see `cylinder_law.h`. Slices differ from the law by some 1e-7 in load and 1e-5 in stiffness at most, a
+bearing by 1e-9 and 1e-7.
 """
 
 from __future__ import annotations
@@ -16,7 +20,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.kernel.library import checked, function
 from ehdmaps.kernel.record import Record, at, integers, numbers
-from mbs.bearings import slice_table as table
+from ehdmaps.maps.kernels.tables import last_of, nodes_of, rows_of
 from mbs.bearings.bearing import Bearing
 
 if TYPE_CHECKING:
@@ -29,6 +33,65 @@ slices that are found no loads, whose contacts are wider than the coupling was m
 WHOLE, GROWING, WITHOUT_KNOTS, FILM_ALONE = 0, 1, 2, 4
 """What `ehd_cylinder_prepare` is asked for: all cells at once, or as slices need them; no table of a faded film; of a
 faded film its nodes alone."""
+
+ROWS = rows_of(14)
+"""Rows of the table on each side of the centre."""
+
+NODES = 2 * ROWS + 1
+"""Number of the ends of cells."""
+
+LAST = last_of(nodes_of(ROWS))
+"""The largest a that is in a cell."""
+
+POWER, CELLS, KNOTS, BY_SLICES = 0.0, 1.0, 2.0, 3.0
+"""Kinds of prepared laws: a formula; cells at even places around a centre; cells between knots, for faded films; and
+the law itself for each slice, where no table reaches down to lift-off."""
+
+
+class LawNumbers(NamedTuple):
+    """The numbers of a prepared law.
+
+    Attributes
+    ----------
+    kind : float
+        POWER or CELLS.
+    coefficient, exponent : float
+        Constants of w = a delta^b [N/m]; for POWER.
+    damping, damping_time : float
+        Constant part of c per unit length [N s/m2], and the ratio of its other part to dw/d approach [s]; for POWER.
+    centre, inverse_scale : float
+        Places of the table [m], [1/m]; for CELLS.
+    highest : float
+        Load above which slices are outside the map [N/m].
+    safe_approach : float
+        Up to it no slice is, nor above the held load [m].
+    lift_off : float
+        Up to it there is no load [m].
+    slope : float
+        What slopes are multiplied by.
+    held_approach, held_load, held_stiffness, held_damping : float
+        Approach [m] and load [N/m] above which the law is the tangent with this stiffness [N/m2] and damping [N s/m2].
+    """
+
+    kind: float
+    coefficient: float
+    exponent: float
+    damping: float
+    damping_time: float
+    centre: float
+    inverse_scale: float
+    highest: float
+    safe_approach: float
+    lift_off: float
+    slope: float
+    held_approach: float
+    held_load: float
+    held_stiffness: float
+    held_damping: float
+
+
+NUMBERS = len(LawNumbers._fields)
+"""Length of an array that holds them in their order."""
 
 _MOST_TILT = 0.5
 _ROUND_OFF = 1e-12
@@ -50,12 +113,12 @@ class CylinderLaw(Record):
         ("grows", c_int64),
     ]
     shapes: ClassVar = {
-        "numbers": (table.NUMBERS,),
-        "cells": (2 * table.ROWS, 4, 2),
-        "knots": (2 * table.ROWS,),
-        "film": (2 * table.ROWS, 8),
-        "nodes": (table.NODES, 4),
-        "marks": (-(-2 * table.NODES // 8),),
+        "numbers": (NUMBERS,),
+        "cells": (2 * ROWS, 4, 2),
+        "knots": (2 * ROWS,),
+        "film": (2 * ROWS, 8),
+        "nodes": (NODES, 4),
+        "marks": (-(-2 * NODES // 8),),
     }
 
 
@@ -195,13 +258,13 @@ class LawRoom:
     Attributes
     ----------
     numbers : array (NUMBERS,)
-        Numbers of the law, those of `mbs.bearings.slice_table.LawNumbers`.
+        Numbers of the law, those of `LawNumbers`.
     law : CylinderLaw
         The struct.
     """
 
     def __init__(self) -> None:
-        self.numbers = np.zeros(table.NUMBERS)
+        self.numbers = np.zeros(NUMBERS)
         self.law = CylinderLaw(numbers=self.numbers)
         self._room = 0
 

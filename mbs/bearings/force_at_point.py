@@ -16,7 +16,7 @@ import numpy.typing as npt
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError, MapError, OutsideMapError
 from ehdmaps.maps.kernels.tables import POWER_LAW
-from mbs.bearings import slice_table as table
+from mbs.bearings import cylinder as table
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.cylinder import (
     ABOVE_LOAD,
@@ -346,7 +346,7 @@ class ForceAtPoint:
 
     @property
     def numbers(self) -> FloatArray:
-        """Numbers of its law, (NUMBERS,), see `mbs.bearings.slice_table.LawNumbers`."""
+        """Numbers of its law, (NUMBERS,), see `mbs.bearings.cylinder.LawNumbers`."""
         return self._work.numbers
 
     @property

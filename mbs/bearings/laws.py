@@ -8,7 +8,7 @@ have a jump of the force at lift-off, while bodies approach. A map's law is take
 
 The law of points that a user has measured or computed has approach, line load and damping of a roller. Between the
 points the curve is a monotone cubic (PCHIP: F. N. Fritsch and R. E. Carlson, SIAM Journal on Numerical Analysis 17
-(1980) 238). It is brought into the cells of `mbs.bearings.slice_table`, centred where the load begins, so that compiled
+(1980) 238). It is brought into the cells of `mbs.bearings.cylinder`, centred where the load begins, so that compiled
 code reads it as it reads the table of a map. Cells are 3 % of their distance from the first point wide, but not less
 than 4e-6 of the whole range: a bend of the curve that is sharper than a cell is rounded within it.
 """
@@ -36,8 +36,7 @@ from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.solids import Material, reduced_modulus
 from ehdmaps.physics.surface import SMOOTH, Surface
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.cylinder import functions
-from mbs.bearings.slice_table import CELLS, POWER, ROWS, LawNumbers
+from mbs.bearings.cylinder import CELLS, POWER, ROWS, LawNumbers, functions
 
 if TYPE_CHECKING:
     from ehdmaps.maps.kernels.law_in_c import LawRecord

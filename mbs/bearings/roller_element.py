@@ -12,7 +12,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement, RingElement
-from mbs.bearings.bearing_force import brought_by_speed, cage_moment, energy_at_rest
+from mbs.bearings.contact_energy import brought_by_speed, cage_moment, energy_at_rest
 from mbs.bearings.laws import FlatLaw, Law
 from mbs.bearings.roller_contacts import RollerContacts
 from mbs.model.body import Body

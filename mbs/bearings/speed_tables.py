@@ -1,6 +1,6 @@
 """Tables of a contact law over the speed of a system, for runs whose speed changes all the time.
 
-Making a table of `mbs.bearings.slice_table` costs thirty bearing forces, too much for each step. Its cells lie at equal
+Making a table of `mbs.bearings.cylinder` costs thirty bearing forces, too much for each step. Its cells lie at equal
 places z = (delta - centre)/scale at all speeds; so a run makes tables at nodes evenly spaced in ln of the speed, as
 it comes to them, and takes between two nodes the straight blend of cells, centre and scale. The nodes are so close
 that the blend is wrong by less than the tables are: `STEP` makes some 1e-8 of load and stiffness of a bearing.
@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
-from mbs.bearings import slice_table as table
+from mbs.bearings import cylinder as table
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.cylinder import FILM_ALONE, WHOLE, LawRoom
 from mbs.bearings.force_at_point import is_one_power

@@ -10,7 +10,6 @@ from typing import Any
 from ehdmaps.errors import InputError
 from ehdmaps.outputs import write_figure
 from ehdmaps.physics.designations.families import not_served
-from ehdmaps.physics.rollers.ribbed_geometry import ribbed_way
 from mbs.commands.common import with_bands
 from mbs.commands.one_bearing.bands import point_lines
 from mbs.commands.one_bearing.cylindrical import read_request
@@ -69,7 +68,11 @@ def _family(arguments: argparse.Namespace) -> Any:
         return BALL_BEARINGS
     if words := not_served(name):
         raise InputError(f"BEARING: {words}")
-    if not (_TAPERED.match(name) or (arguments.axial is not None and ribbed_way(name))):
+    if arguments.axial is None and not _TAPERED.match(name):
+        return None
+    from ehdmaps.physics.rollers.ribbed_geometry import ribbed_way
+
+    if not (_TAPERED.match(name) or ribbed_way(name)):
         return None
     from mbs.commands.one_bearing.ribs import RIBBED_BEARINGS, TAPERED_BEARINGS
 

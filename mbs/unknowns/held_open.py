@@ -86,7 +86,7 @@ def _clearances(scene: Scene) -> Iterator[Unknown]:
         elif reach is not None and reach.taken != STATED:
             (least, largest), why = reach.reach, reach.why
             held = f"{1e6 * least:.4g} to {MICROMETRE.text(largest)}"
-        elif value == 0.0 and getattr(entry.geometry, "contact_angle", 0.0):
+        elif value == 0.0 and entry.of_points and getattr(entry.geometry, "contact_angle", None):
             why = "not stated: set when it is mounted, by springs and axial offsets"
             yield Unknown(name, "clearance", "0 um, held", why)
             continue

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import InputError, OutsideMapError
-from mbs.bearings import slice_table as table
+from mbs.bearings import cylinder as table
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.cylinder import GROWING, WHOLE, Arrays, LawRoom, functions
 from tests.cases.bearings import bearing, map_law

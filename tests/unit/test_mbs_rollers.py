@@ -81,7 +81,7 @@ class Compiled:
 @pytest.mark.slow
 @pytest.mark.parametrize(("films", "force", "slope"), [("dry", 1e-12, 1e-12), ("slow", 1e-8, 1e-6)])
 def test_compiled_contacts_are_those_in_python(films, force, slope):
-    """Dry to rounding; with films to what tables are wrong, see `mbs.bearings.slice_table`."""
+    """Dry to rounding; with films to what tables are wrong, see `mbs.bearings.cylinder`."""
     given, by_v = element(films), 3e-3
     compiled, (q, v) = Compiled(given, ROLLERS), displaced()
     for step, angle in enumerate((0.0, 0.2, 1.9)):

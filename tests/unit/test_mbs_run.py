@@ -13,8 +13,8 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_block import Films
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.cylinder import LawNumbers
 from mbs.bearings.laws import FlatLaw, hertz
-from mbs.bearings.slice_table import LawNumbers
 from mbs.bearings.speed_tables import NODES, STEP, SpeedTables, SpeedWindow
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import ElementDefaults, Forces, Load, Operation, Port, Sensor, Spring

@@ -18,7 +18,8 @@ from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.lubricant import Lubricant
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
-from mbs.bearings.bearing_force import BearingForce, energy_at_rest
+from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.contact_energy import energy_at_rest
 from mbs.bearings.laws import Law, formula, hertz
 from mbs.laboratory.extremes.check import Check, Verdict, checked
 from mbs.model.elements import Operation
