@@ -44,6 +44,8 @@ class Choice(Generic[Subject]):
         The subject with that value; raises `InputError` where it does not fit.
     text : callable
         A value for people.
+    together : bool
+        Whether several texts are one value, with semicolons between them; else each is a case.
     """
 
     name: str
@@ -53,6 +55,7 @@ class Choice(Generic[Subject]):
     read: Callable[[str], Any]
     change: Callable[[Subject, Any], Subject]
     text: Callable[[Any], str] = str
+    together: bool = False
 
     @property
     def key(self) -> str:
@@ -277,7 +280,8 @@ def texts_of(arguments: argparse.Namespace, choice: Choice[Any]) -> list[str]:
         The choice.
     """
     given = getattr(arguments, choice.key, None)
-    return [] if given is None else [given] if isinstance(given, str) else list(given)
+    texts = [] if given is None else [given] if isinstance(given, str) else list(given)
+    return ["; ".join(texts)] if texts and choice.together else texts
 
 
 def add_choices(

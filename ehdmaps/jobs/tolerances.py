@@ -11,7 +11,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from ehdmaps.errors import InputError, closest, short
+from ehdmaps.errors import InputError, short
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import Display, quantity
 
@@ -154,7 +154,7 @@ def split(text: str) -> tuple[str, str]:
 
 
 def read_tolerances(section: Table, names: tuple[str, ...] = tuple(TOLERATED)) -> dict[str, Tolerance]:
-    """Read [tolerances]; unknown keys are noted, and the table is closed.
+    """Read [tolerances]; whoever calls closes it.
 
     Parameters
     ----------
@@ -164,12 +164,12 @@ def read_tolerances(section: Table, names: tuple[str, ...] = tuple(TOLERATED)) -
         Keys that the file may have.
     """
     found = {}
-    for name in section.entries():
-        if name not in names:
-            section.note(name, f"unknown key{closest(name, names)}; allowed: {', '.join(names)}")
+    for name in names:
+        text = section.get(name)
+        if name not in section:
             continue
         try:
-            found[name] = read_tolerance(section.get(name), name)
+            found[name] = read_tolerance(text, name)
         except InputError as error:
             section.note(name, error.problems[0])
     return found

@@ -28,6 +28,7 @@ from mbs.model.relaxation import Films
 from mbs.model.system import Places, System
 from mbs.model.turning import TurningLoad
 from mbs.scene import kinds
+from mbs.scene.changes import with_clearance
 from mbs.scene.contact_laws import NO_LAW, ContactLaws, dry_reason, law_in_force, supply_words, surface_label
 from mbs.scene.kinds import ElementKind
 from mbs.scene.map_set import MapSet, again_from_table
@@ -406,7 +407,10 @@ def assemble(
     chosen, maps = law_in_force(law, _opened(emap), scene, inlet_heat)
     problems: list[str] = []
     if clearance is not None:
-        scene = _with_clearance(scene, clearance, problems)
+        try:
+            scene = with_clearance(scene, clearance)
+        except InputError as error:
+            problems += [f"--clearance: {problem}" for problem in error.problems]
     laws = ContactLaws(chosen, scene, maps, films, supply, inlet_heat)
     wrong_law = laws.problems()
     problems = [*wrong_law, *problems]
@@ -527,22 +531,6 @@ def choice_attributes(models: Sequence[tuple[str, Model]]) -> dict[str, str]:
             if words:
                 found[name].append(f"{label}: {words}" if len(models) > 1 else words)
     return {name: "; ".join(words) for name, words in found.items() if words}
-
-
-def _with_clearance(scene: Scene, clearance: float, problems: list[str]) -> Scene:
-    """The scene with another clearance of all bearings."""
-    changed = []
-    for entry in scene.bearings:
-        try:
-            changed.append(dataclasses.replace(entry, geometry=entry.geometry.with_clearance(clearance)))
-        except InputError as error:
-            problems += [f"--clearance: {problem}" for problem in error.problems]
-            changed.append(entry)
-    try:
-        scene = scene.with_located(lambda entry: entry.with_clearance(clearance))
-    except InputError as error:
-        problems += [f"--clearance: {problem}" for problem in error.problems]
-    return scene.with_bearings(changed)
 
 
 def _elements(scene: Scene, surroundings: Surroundings, *, may_build: bool) -> tuple[dict[str, list[Built]], list[str]]:

@@ -16,6 +16,7 @@ from mbs.scene.fields import HERTZ
 from mbs.scene.scene import Scene
 from mbs.scene.specs import HIGHEST_DAMPING_RATIO, BodySpec, FlexibleSpec, ShaftSpec
 from mbs.settings import RunUp
+from mbs.unknowns.statement import of_all
 
 
 def with_loads(scene: Scene, factor: float) -> Scene:
@@ -48,6 +49,34 @@ def warmed(scene: Scene, kelvin: float) -> Scene:
         thermal = entry.thermal
         changed.append(entry if thermal is None else dataclasses.replace(entry, thermal=thermal.warmed(kelvin)))
     return with_temperature(scene.with_bearings(changed), scene.temperature + kelvin)
+
+
+def with_clearance(scene: Scene, clearance: float) -> Scene:
+    """The scene with another diametral clearance of all bearings that have one [m].
+
+    What single bearings state of theirs is outdone by it.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    clearance : float
+        Clearance [m].
+
+    Raises
+    ------
+    InputError
+        For each bearing that cannot have it.
+    """
+    problems: list[str] = []
+    for entry in scene.of_all_kinds:
+        try:
+            scene = with_clearance_of(scene, entry.name, clearance)
+        except InputError as error:
+            problems += error.problems
+    if problems:
+        raise InputError(problems)
+    return dataclasses.replace(scene, tolerances=of_all(scene.tolerances, "clearance"))
 
 
 def with_clearance_of(scene: Scene, bearing: str, clearance: float) -> Scene:

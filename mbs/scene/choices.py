@@ -450,6 +450,31 @@ def _with_temperature(subject: Subject, kelvin: float) -> Subject:
     return dataclasses.replace(changed, law=dataclasses.replace(changed.law, maps=wider))
 
 
+def _statements(text: str) -> Any:
+    """Read statements on what is known."""
+    from mbs.unknowns.statement import read_statements
+
+    return read_statements(text)
+
+
+def _told(statements: Any) -> str:
+    """Tell statements."""
+    return "; ".join(one.text for one in statements)
+
+
+def _with_knowledge(subject: Subject, statements: Any) -> Subject:
+    """A subject of which more is known."""
+    from mbs.scene.changes import with_clearance
+    from mbs.unknowns.statement import known
+
+    scene = subject.scene if subject.clearance is None else with_clearance(subject.scene, subject.clearance)
+    subject = dataclasses.replace(subject, scene=known(scene, statements), clearance=None)
+    for one in statements:
+        if one.group == "temperature" and one.value is not None:
+            subject = _with_temperature(subject, one.value)
+    return subject
+
+
 def _of_scene(name: str) -> Callable[[Subject, Any], Subject]:
     """A change of the scene by the function of `mbs.scene.changes` of this name."""
 
@@ -562,6 +587,17 @@ _ROWS = (
         lambda subject, value: dataclasses.replace(subject, clearance=value),
         MICROMETRE.text,
         example="15 um",
+    ),
+    SceneChoice(
+        "know",
+        "STATEMENT",
+        'how well a number is known, as [tolerances] of a scene: "clearance = 20 um +- 5 um", "clearance of NAME = +- 0 '
+        'um", "temperature = +- 2 K", "geometry = +- 0 %"',
+        "what the {file} states, else usual spreads, which `mbs check` lists",
+        _statements,
+        _with_knowledge,
+        _told,
+        together=True,
     ),
     SceneChoice(
         "load-factor",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from importlib import resources
 from os import PathLike, fspath
 from pathlib import Path
@@ -17,6 +17,7 @@ from ehdmaps.jobs import table
 from ehdmaps.jobs.problem import AxisRule, read_axis, read_lubricant
 from ehdmaps.jobs.supply import read_supply, read_surface
 from ehdmaps.jobs.table import Table
+from ehdmaps.jobs.tolerances import Tolerance, read_tolerances
 from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.units import DAMPER, RPM, SPRING, TEMPERATURE, Display, closest, short
 from mbs.gears.pair import GearPair
@@ -33,6 +34,7 @@ from mbs.scene.shafts.standing import mounts, read_gravity
 from mbs.scene.specs import ORIGIN, BodySpec, FlexibleSpec, RigidSpec, ShaftSpec
 from mbs.scene.turning import read_excitation, read_unbalance
 from mbs.settings import HIGHEST, MOST_SPEEDS, CampbellSettings, RunUp, Settings, SweepRange
+from mbs.unknowns.statement import taken_out
 
 MOST_POINTS = 1000
 """Points of a torque over speed."""
@@ -198,9 +200,9 @@ def parse_scene(text: str, name: str, where: str, folder: Path | None = None) ->
     InputError
         With every problem found, each beginning with `where`.
     """
-    values = table.parse(text, where)
     problems: list[str] = []
-    scene = _Reader(Table(values, "scene file", problems), folder).scene(text, name)
+    values, tolerances = taken_out(table.parse(text, where), problems)
+    scene = _Reader(Table(values, "scene file", problems), folder).scene(text, name, tolerances)
     if problems or scene is None:
         raise InputError([f"{where}: {problem}" for problem in problems])
     return scene
@@ -215,8 +217,8 @@ class _Reader:
         self._assumed: list[str] = []
         self._mounted = mounts(top.get("shafts"), top.get("bearings"))
 
-    def scene(self, text: str, name: str) -> Scene | None:
-        """Read everything; None where a problem was noted."""
+    def scene(self, text: str, name: str, tolerances: Mapping[str, Tolerance]) -> Scene | None:
+        """Read everything, beside tolerances of its values; None where a problem was noted."""
         top = self._top
         schema = top.get("schema", required="schema = 1")
         if "schema" in top and (isinstance(schema, bool) or schema != 1):
@@ -263,6 +265,7 @@ class _Reader:
         if "drive" in top and "runup" not in top:
             top.note("drive", "stands without [runup]; allowed: with a table [runup]; delete it, or add that")
         sweep = top.optional("sweep", "[sweep]", read_sweep, self._close)
+        stated = top.optional("tolerances", "[tolerances]", read_tolerances, self._close)
         campbell = top.optional("campbell", "[campbell]", read_campbell, self._close)
         top.close()
         if top.problems or speed is None or temperature is None or frequencies is None:
@@ -291,6 +294,7 @@ class _Reader:
             sweep=sweep,
             campbell=campbell or CampbellSettings(),
             assumed=self._assumed,
+            tolerances={**(stated or {}), **tolerances},
         )
 
     def _typed_spins(self) -> set[str]:

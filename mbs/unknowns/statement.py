@@ -6,17 +6,29 @@ A scene keeps them in one mapping, `Scene.tolerances`: "clearance of drive" of o
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import dataclasses
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
-from ehdmaps.jobs.tolerances import Tolerance
+from ehdmaps.errors import InputError, closest, short
+from ehdmaps.jobs.tolerances import TOLERATED, Tolerance, read_tolerance, split
+from ehdmaps.units import quantity
 
 if TYPE_CHECKING:
     from mbs.scene.scene import Scene
 
+_OF = " of "
+
+_VALUES = {"clearance": "m", "temperature": "K"}
+"""What a command may state with a value, in its unit; the others are stated by their tolerance alone."""
+
+EXACT = Tolerance(0.0, True, "+-0 %")
+
 
 def of_bearing(group: str, bearing: str) -> str:
     """Key of a statement on one bearing."""
-    return f"{group} of {bearing}"
+    return f"{group}{_OF}{bearing}"
 
 
 def tolerance_of(scene: Scene, group: str, bearing: str = "") -> Tolerance | None:
@@ -33,3 +45,173 @@ def tolerance_of(scene: Scene, group: str, bearing: str = "") -> Tolerance | Non
     """
     found = scene.tolerances.get(of_bearing(group, bearing)) if bearing else None
     return found or scene.tolerances.get(group)
+
+
+def of_all(tolerances: Mapping[str, Tolerance], group: str) -> dict[str, Tolerance]:
+    """Statements without those on single bearings of a group, which a nearer statement on all has outdone."""
+    return {key: value for key, value in tolerances.items() if not key.startswith(group + _OF)}
+
+
+@dataclass(frozen=True)
+class Statement:
+    """Statement of a command, such as "clearance of drive = 20 um +- 5 um".
+
+    Attributes
+    ----------
+    group : str
+        A key of [tolerances].
+    bearing : str
+        Name of a bearing; empty for all.
+    value : float or None
+        Value in SI; None where the scene keeps its own.
+    tolerance : Tolerance or None
+        Half-width; None for a value that is stated bare.
+    text : str
+        Statement as it was typed.
+    """
+
+    group: str
+    bearing: str
+    value: float | None
+    tolerance: Tolerance | None
+    text: str
+
+
+def read_statements(text: str) -> tuple[Statement, ...]:
+    """Read statements of a command, with semicolons between several.
+
+    Parameters
+    ----------
+    text : str
+        Such as "clearance = 20 um +- 5 um; temperature = +- 2 K".
+
+    Raises
+    ------
+    InputError
+        With every problem.
+
+    Examples
+    --------
+    >>> [found] = read_statements("clearance of drive = 20 um +- 5 um")
+    >>> found.group, found.bearing, found.value, found.tolerance.half_width(20e-6)
+    ('clearance', 'drive', 2e-05, 5e-06)
+    """
+    problems, found = [], []
+    for part in filter(None, map(str.strip, text.split(";"))):
+        try:
+            found.append(_statement(part))
+        except InputError as error:
+            problems += error.problems
+    if problems or not found:
+        raise InputError(problems or [f"got {short(text)}; allowed: such as 'clearance = 20 um +- 5 um'"])
+    return tuple(found)
+
+
+def _statement(text: str) -> Statement:
+    """Read one statement."""
+    key, equals, stated = (part.strip() for part in text.partition("="))
+    group, _, bearing = (part.strip() for part in key.partition(_OF))
+    names = tuple(TOLERATED)
+    if group not in names:
+        raise InputError(f"got {short(key)}{closest(group, names)}; allowed: {', '.join(names)}")
+    example = TOLERATED[group].examples
+    if not equals or not stated:
+        raise InputError(f"got {short(text)} without a number; allowed: {group} = +- and one of {example}")
+    value, tolerance = split(stated)
+    if value and group not in _VALUES:
+        raise InputError(
+            f"got {short(text)}; allowed: a tolerance alone, {group} = +- {example}; values are stated for "
+            f"{' and '.join(_VALUES)}"
+        )
+    try:
+        size = quantity(value, _VALUES[group]) if value else None
+        width = read_tolerance(tolerance, group) if tolerance else None
+    except InputError as error:
+        raise InputError([f"{group}: {problem}" for problem in error.problems]) from None
+    return Statement(group, bearing, size, width, text)
+
+
+def known(scene: Scene, statements: tuple[Statement, ...]) -> Scene:
+    """The scene with statements of a command, but for a value of the temperature.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    statements : tuple of Statement
+        Statements in their order.
+
+    Raises
+    ------
+    InputError
+        For a bearing that there is not, and a value that a bearing cannot have.
+    """
+    from mbs.scene.changes import with_clearance_of
+
+    names = tuple(entry.name for entry in scene.of_all_kinds)
+    for one in statements:
+        if one.bearing and one.bearing not in names:
+            raise InputError(
+                f"got {short(one.text)}, but no bearing {one.bearing!r}{closest(one.bearing, names)}; allowed: "
+                f"{', '.join(names) or 'none, without bearings'}"
+            )
+        if one.group == "clearance" and one.value is not None:
+            for name in (one.bearing,) if one.bearing else names:
+                scene = with_clearance_of(scene, name, one.value)
+        tolerances = dict(scene.tolerances) if one.bearing else of_all(scene.tolerances, one.group)
+        key = of_bearing(one.group, one.bearing) if one.bearing else one.group
+        if one.tolerance is not None:
+            tolerances[key] = one.tolerance
+        else:
+            tolerances.pop(key, None)
+        scene = dataclasses.replace(scene, tolerances=tolerances)
+    return scene
+
+
+def taken_out(values: dict[str, Any], problems: list[str]) -> tuple[dict[str, Any], dict[str, Tolerance]]:
+    """Tables of a scene file with plain values in place of values with tolerances, and these tolerances.
+
+    Parameters
+    ----------
+    values : dict
+        The tables as they were parsed.
+    problems : list of str
+        What is wrong is appended.
+
+    Notes
+    -----
+    Temperature of [operation] and clearances of [[bearings]] may have tolerances. A profile that is stated is exact.
+    """
+    found: dict[str, Tolerance] = {}
+
+    def plain(table: object, key: str, group: str, name: str, where: str) -> object:
+        text = table.get(key) if isinstance(table, dict) else None
+        if not isinstance(table, dict) or not isinstance(text, str) or not all(parts := split(text)):
+            return table
+        try:
+            found[name] = read_tolerance(parts[1], group)
+        except InputError as error:
+            problems.append(f"{where} {key}: {error.problems[0]}")
+        return {**table, key: parts[0]}
+
+    changed = dict(values)
+    if "operation" in values:
+        changed["operation"] = plain(values["operation"], "temperature", "temperature", "temperature", "[operation]")
+    if isinstance(values.get("bearings"), list):
+        changed["bearings"] = [_plain_bearing(entry, found, plain) for entry in values["bearings"]]
+    return changed, found
+
+
+def _plain_bearing(entry: object, found: dict[str, Tolerance], plain: Callable[..., object]) -> object:
+    """A table [[bearings]] with plain values."""
+    if not isinstance(entry, dict):
+        return entry
+    bearing, where = str(entry.get("name", "")), f"[[bearings]] {entry.get('name', '')!s:.60}"
+    if "profile" in entry:
+        found[of_bearing("profile", bearing)] = EXACT
+    name = of_bearing("clearance", bearing)
+    outer = plain(entry, "diametral_clearance", "clearance", name, where)
+    if isinstance(outer, dict) and "geometry" in outer:
+        outer = {**outer}
+        outer["geometry"] = plain(outer["geometry"], "diametral_clearance", "clearance", name, f"{where} geometry")
+    return outer

@@ -54,8 +54,9 @@ def test_integrator_passes_and_explicit_methods_fail_where_they_have_to():
 
 
 @pytest.mark.slow
-def test_command_writes_json_and_refuses_unknown_parts(capsys):
-    assert main(["stability", "--only", "readers", "--mutations", "1", "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["checks"]
+def test_command_writes_json_and_refuses_unknown_parts(capsys, tmp_path):
+    assert main(["stability", "--only", "readers", "--mutations", "1", "-o", str(tmp_path / "checks.json")]) == 0
+    assert json.loads((tmp_path / "checks.json").read_text())["checks"]
+    capsys.readouterr()
     assert main(["stability", "--only", "reader"]) == 2
     assert "allowed: element, integrator, readers" in capsys.readouterr().err

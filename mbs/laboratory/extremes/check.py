@@ -230,7 +230,7 @@ def searched(
     if output is not None:
         text = record if Path(output).suffix == ".json" else f"{head} ({MARK})\n{table}"
         write_text(Path(output), f"{text}\n", CHECKS)
-    return record if arguments.json else f"{head}\n{table}", int(any(check.failed for check in checks))
+    return f"{head}\n{table}", int(any(check.failed for check in checks))
 
 
 def _reasons(check: Check) -> str:
