@@ -53,17 +53,17 @@ class Tolerated:
 TOLERATED: Mapping[str, Tolerated] = {
     row.name: row
     for row in (
-        Tolerated("clearance", "m", 1e-3, True, Display("um", 1e6), '"5 um" or "10 %"'),
-        Tolerated("temperature", "K", 50.0, False, Display("K"), '"2 K"'),
-        Tolerated("viscosity", "", 0.0, True, Display("%", 100.0), '"5 %"'),
-        Tolerated("pressure_viscosity", "", 0.0, True, Display("%", 100.0), '"10 %"'),
+        Tolerated("clearance", "m", 1e-3, True, Display("um", 1e6), "5 um, or 10 %"),
+        Tolerated("temperature", "K", 50.0, False, Display("K"), "2 K"),
+        Tolerated("viscosity", "", 0.0, True, Display("%", 100.0), "5 %"),
+        Tolerated("pressure_viscosity", "", 0.0, True, Display("%", 100.0), "10 %"),
         Tolerated(
-            "geometry", "", 0.0, True, Display("%", 100.0), '"0 %" (as drawn), "50 %" of what an estimate states'
+            "geometry", "", 0.0, True, Display("%", 100.0), "0 %: as drawn, or 50 % of the errors of an estimate"
         ),
-        Tolerated("preload", "N", 1e7, True, Display("N"), '"20 N" or "10 %"'),
-        Tolerated("load", "", 0.0, True, Display("%", 100.0), '"5 %"'),
-        Tolerated("profile", "", 0.0, True, Display("%", 100.0), '"0 %": the profile is as stated'),
-        Tolerated("cage_angle", "rad", 2.0 * math.pi, False, Display("deg", 180.0 / math.pi), '"0 deg"'),
+        Tolerated("preload", "N", 1e7, True, Display("N"), "20 N, or 10 %"),
+        Tolerated("load", "", 0.0, True, Display("%", 100.0), "5 %"),
+        Tolerated("profile", "", 0.0, True, Display("%", 100.0), "0 %: as the scene has it"),
+        Tolerated("cage_angle", "rad", 2.0 * math.pi, False, Display("deg", 180.0 / math.pi), "0 deg: as it starts"),
     )
 }
 """Keys of [tolerances], in the order of the reference."""

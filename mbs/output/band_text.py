@@ -15,8 +15,8 @@ from ehdmaps.arrays import IntArray
 from ehdmaps.units import DAMPER, FILM, PRESSURE, SPRING
 from mbs.output.result_text import share_words
 from mbs.scene.scene import Scene
-from mbs.unknowns.held_open import held_open
 from mbs.unknowns.looks import Band, Term
+from mbs.unknowns.words import missing_words
 
 if TYPE_CHECKING:
     from mbs.linearised.modes import Modes
@@ -27,13 +27,6 @@ HEAD = "90 % of what is not known"
 
 DECIDED = "decided by; and the band if the first, of all bearings, were exact"
 """Heading of what decides bands, and of what stating it would give."""
-
-NOT_IN_IT = "oil supply, damping of seats and joints, loads, and masses and bodies of the scene"
-"""What no band holds, of any machine."""
-
-BALL_CAGE = "the cage hypothesis of balls"
-"""What bands of machines with balls do not hold besides."""
-
 
 LOPSIDED = 0.1
 """Part of the larger side of a band below which the smaller one makes no more digits."""
@@ -121,16 +114,14 @@ def exact_text(band: Band, place: int, relative: str = "") -> str:
 
 
 def about_lines(scene: Scene) -> list[str]:
-    """Lines on what bands hold of a scene, and what they do not.
+    """A line on what bands do not hold of a scene; what they hold is in the head of a result.
 
     Parameters
     ----------
     scene : Scene
         The scene.
     """
-    held = ", ".join(f"{unknown.name} {unknown.held}" for unknown in held_open(scene))
-    missing = f"{NOT_IN_IT}, {BALL_CAGE}" if scene.has_points else NOT_IN_IT
-    return [f"  held open: {held or 'nothing'}; not in it: {missing}"] if scene.has_bearings else []
+    return [f"  {HEAD}: what the head says is held open; {missing_words(scene)}"] if scene.has_bearings else []
 
 
 def lost_lines(band: Band, names: Sequence[str]) -> Iterator[str]:

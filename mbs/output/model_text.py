@@ -17,6 +17,8 @@ from mbs.output.state_text import class_lines, state_lines
 from mbs.scene.assembly import Model
 from mbs.scene.contact_laws import supply_words
 from mbs.scene.fields import MICROMETRE
+from mbs.scene.scene import Scene
+from mbs.unknowns.words import open_lines
 
 if TYPE_CHECKING:
     from mbs.linearised.validity import FilmError
@@ -94,11 +96,12 @@ def heading(model: Model, speed: float | None = None) -> list[str]:
     state = f"{at}{temperature_text(model)}, clearance {clearance_text(model) or 'none'}, {weight_text(model)}"
     # Most of what was chosen is in these words and in those of the law.
     chosen = [f", {name} {text}" for name, text in model.chosen.items() if text not in state and text not in model.law]
-    assumed = f"{len(model.scene.assumed)} keys of the scene, marked there" if model.scene.assumed else "nothing"
+    assumed = assumed_words(model.scene)
     return [
         f"{model.scene.title}: law {model.law}",
-        f"  {state}{''.join(chosen)}; assumed: {assumed}",
+        f"  {state}{''.join(chosen)}{f'; assumed: {assumed}' if assumed else ''}",
         *class_lines(model.scene),
+        *open_lines(model.scene),
         *_estimated(model),
         *(
             f"  the weight of {name} is left out: its finite elements are held themselves, so that it bears on no "
@@ -108,6 +111,13 @@ def heading(model: Model, speed: float | None = None) -> list[str]:
         *state_lines(model.states),
         *model.warnings,
     ]
+
+
+def assumed_words(scene: Scene) -> str:
+    """What a scene marks as assumed; "nothing" only where nothing is held open, else empty."""
+    if scene.assumed:
+        return f"{len(scene.assumed)} keys of the scene, marked there"
+    return "" if scene.has_bearings else "nothing"
 
 
 def _estimated(model: Model) -> list[str]:

@@ -64,7 +64,7 @@ def beside_class(geometry: object) -> str:
 
 
 def class_lines(scene: Scene) -> list[str]:
-    """A line for each kind of bearing whose clearance is not stated, or stated beside a class of its designation.
+    """A line for each kind of bearing whose clearance is stated beside a class of its designation.
 
     Parameters
     ----------
@@ -73,7 +73,8 @@ def class_lines(scene: Scene) -> list[str]:
     """
     kinds: dict[tuple[str, str], list[str]] = {}
     for bearing, (name, reach) in scene.clearance_ranges.items():
-        kinds.setdefault((name, reach.words), []).append(bearing)
+        if reach.taken == STATED:
+            kinds.setdefault((name, reach.words), []).append(bearing)
     return [f"  {name} ({', '.join(bearings)}): {words}" for (name, words), bearings in kinds.items()]
 
 

@@ -21,7 +21,14 @@ from mbs.analyses.reach import fade_lines, outside_at
 from mbs.model.elements import GROUND
 from mbs.model.findings import Severity
 from mbs.model.relaxation import NOTABLE
-from mbs.output.model_text import LITTLE_DAMPING, OTHER_DAMPING, clearance_text, temperature_text, weight_text
+from mbs.output.model_text import (
+    LITTLE_DAMPING,
+    OTHER_DAMPING,
+    assumed_words,
+    clearance_text,
+    temperature_text,
+    weight_text,
+)
 from mbs.output.one_bearing.located import located
 from mbs.output.one_bearing.table import regime
 from mbs.output.result_text import kinds
@@ -32,6 +39,7 @@ from mbs.scene.assembly import ring_motions
 from mbs.scene.contact_laws import supply_words
 from mbs.scene.fields import FORCE, HERTZ
 from mbs.scene.oils import by_oil
+from mbs.unknowns.words import open_words
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +129,8 @@ def machine(found: Examination) -> Markup:
         *_oil(found),
         *([("oil supply", typeset(supply_words(model.supplies)))] if model.supplies else []),
         *([("surfaces", typeset(model.surface.label))] if model.surface else []),
-        ("assumed", f"{len(scene.assumed)} keys of the scene, marked there" if scene.assumed else "nothing"),
+        *([("assumed", assumed)] if (assumed := assumed_words(scene)) else []),
+        *(("" if k else "held open", typeset(line)) for k, line in enumerate(open_words(scene))),
     ]
     bearings = [
         (

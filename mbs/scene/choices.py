@@ -591,8 +591,8 @@ _ROWS = (
     SceneChoice(
         "know",
         "STATEMENT",
-        'how well a number is known, as [tolerances] of a scene: "clearance = 20 um +- 5 um", "clearance of NAME = +- 0 '
-        'um", "temperature = +- 2 K", "geometry = +- 0 %"',
+        'how well a number is known, as [tolerances] of a scene: "clearance = 20 um +- 5 um", "clearance of NAME = +- '
+        '0 um", "temperature = +- 2 K", "geometry = +- 0 %"',
         "what the {file} states, else usual spreads, which `mbs check` lists",
         _statements,
         _with_knowledge,

@@ -62,7 +62,7 @@ def _parts(entry: BearingSpec | LocatingSpec, share: float) -> Iterator[tuple[st
     if found := re.search(r"number of (rollers|balls) \+-(\d+)", words):
         key, most = found[1], int(found[2])
         count = getattr(geometry, key)
-        yield f"number of {key}", f"{count} +-{most}", [{key: count - most}, {key: count + most}]
+        yield f"{key[:-1]} count", f"{count} +-{most}", [{key: count - most}, {key: count + most}]
 
 
 def profiles(scene: Scene) -> Iterator[Unknown]:

@@ -96,7 +96,8 @@ def read_statements(text: str) -> tuple[Statement, ...]:
     >>> found.group, found.bearing, found.value, found.tolerance.half_width(20e-6)
     ('clearance', 'drive', 2e-05, 5e-06)
     """
-    problems, found = [], []
+    problems: list[str] = []
+    found = []
     for part in filter(None, map(str.strip, text.split(";"))):
         try:
             found.append(_statement(part))
@@ -116,7 +117,7 @@ def _statement(text: str) -> Statement:
         raise InputError(f"got {short(key)}{closest(group, names)}; allowed: {', '.join(names)}")
     example = TOLERATED[group].examples
     if not equals or not stated:
-        raise InputError(f"got {short(text)} without a number; allowed: {group} = +- and one of {example}")
+        raise InputError(f"got {short(text)} without a number; allowed: {group} = +- {example}")
     value, tolerance = split(stated)
     if value and group not in _VALUES:
         raise InputError(

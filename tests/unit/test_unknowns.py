@@ -7,9 +7,12 @@ import math
 import numpy as np
 import pytest
 
+from ehdmaps.errors import InputError
 from ehdmaps.physics.lubricant import Lubricant
+from mbs.cli import main
 from mbs.scene.reader import parse_scene
 from mbs.unknowns.held_open import CAGES, held_open
+from mbs.unknowns.statement import known, read_statements
 
 MACHINE = """
 schema = 1
@@ -37,7 +40,7 @@ position = "280 mm"
 diametral_clearance = "10 um"
 [[loads]]
 name = "preload"
-on = "shaft"
+on = "shaft:left"
 force = ["200 N", "0 N", "-400 N"]
 """
 
@@ -67,7 +70,7 @@ def test_each_unknown_has_the_machines_at_its_ends():
     both = [each.lubricant.at(333.15).pressure_viscosity.pressure_viscosity for each in (base, alpha)]
     assert both[1] / both[0] == pytest.approx(1.25)
     assert found["pressure-viscosity"].reflected
-    assert [look.bearings[0].geometry.rollers for look in found["number of rollers of left"].looks] == [13, 15]
+    assert [look.bearings[0].geometry.rollers for look in found["roller count of left"].looks] == [13, 15]
     grooves = [look.located[0].geometry.outer_conformity for look in found["outer groove of right"].looks]
     assert grooves == pytest.approx([0.515, 0.53])
     assert [look.loads[0].force[0] for look in found["preload"].looks] == pytest.approx([160.0, 240.0])
@@ -92,3 +95,72 @@ def test_another_alpha_keeps_the_curve_near_the_temperature():
         alphas = [each.at(kelvin).pressure_viscosity.pressure_viscosity for each in (changed, oil)]
         assert alphas[0] / alphas[1] == pytest.approx(1.1, rel=within)
     assert Lubricant.named("FVA3").with_alpha(1.1, 333.15) is None  # whose measured law gives alpha
+
+
+def test_statements_are_nearest_first():
+    """A command goes before a bearing, a bearing before the table; nothing at all is exact."""
+    top = '[tolerances]\nclearance = "2 um"\ntemperature = "0 K"\ngeometry = "50 %"\nviscosity = "0 %"'
+    found = opened(top, 'profile = "iso"\ndiametral_clearance = "20 um +- 10 %"')
+    assert (found["clearance of left"].held, found["clearance of right"].held) == ("20 um +-2 um", "10 um +-2 um")
+    assert not {"temperature", "viscosity", "profile of left"} & set(found)
+    assert found["ball diameter of right"].held == "+-4 %"
+    outer = [look.located[0].geometry.outer_conformity for look in found["outer groove of right"].looks]
+    assert outer == pytest.approx([0.5175, 0.525])  # half way from 0.52
+    base = scene(top, 'diametral_clearance = "20 um +- 10 %"')
+    for text, left, right in (
+        ("clearance = 30 um +- 3 um", "30 um +-3 um", "30 um +-3 um"),
+        ("clearance of left = +- 1 um", "20 um +-1 um", "10 um +-2 um"),
+        ("clearance = 15 um; clearance of right = 12 um +- 4 um", "15 um +-5 um", "12 um +-4 um"),
+    ):
+        held = {one.name: one.held for one in held_open(known(base, read_statements(text)))}
+        assert (held["clearance of left"], held["clearance of right"]) == (left, right)
+    exact = known(base, read_statements("; ".join(f"{key} = +- {0} {unit}" for key, unit in UNITS.items())))
+    assert [one.name for one in held_open(exact)] == []
+    assert {one.group for one in held_open(known(base, read_statements("load = 5 %".replace("=", "= +-"))))} >= {"load"}
+
+
+UNITS = {"clearance": "um", "temperature": "K", "cage_angle": "deg"} | dict.fromkeys(
+    ("viscosity", "pressure_viscosity", "geometry", "preload", "load", "profile"), "%"
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("clearence = +- 0 um", r"got 'clearence' \(did you mean 'clearance'\?\); allowed: clearance, temperature"),
+        ("clearance", "got 'clearance' without a number"),
+        ("clearance = 20 um +- 5 K", "clearance: got '5 K'; allowed: 0 to 1000 um, or 0 % to 100 %, such as 5 um"),
+        ("temperature = +- 5 %", "temperature: got '5 %'; allowed: 0 to 50 K, such as 2 K"),
+        ("viscosity = 3 um +- 5 %", "allowed: a tolerance alone"),
+        ("geometry = +- 2 mm", "geometry: got '2 mm'; allowed: 0 % to 100 %"),
+        ("", "got ''; allowed: such as"),
+    ],
+)
+def test_statements_that_are_none(text, said):
+    with pytest.raises(InputError, match=said):
+        read_statements(text)
+
+
+def test_what_files_and_commands_refuse(tmp_path, capsys):
+    wrong = MACHINE.format(
+        top='[tolerances]\nclearence = "2 um"\nload = "2 N"', left='diametral_clearance = "9 um +- 1 K"'
+    )
+    with pytest.raises(InputError) as caught:
+        parse_scene(wrong, "machine", "machine.toml")
+    for words in (
+        "[tolerances] clearence: unknown key (did you mean 'clearance'?)",
+        "[tolerances] load: got '2 N'; allowed: 0 % to 100 %",
+        "[[bearings]] left diametral_clearance: got '1 K'",
+    ):
+        assert any(words in problem for problem in caught.value.problems)
+    path = tmp_path / "machine.toml"
+    path.write_text(MACHINE.format(top="", left=""))
+    assert main(["check", str(path), "--law", "hertz", "--know", "clearance of middle = +- 1 um"]) == 2
+    assert "--know: got 'clearance of middle = +- 1 um', but no bearing 'middle'" in capsys.readouterr().err
+    stated = ["--know", "clearance of left = 20 um +- 3 um", "--know", "temperature = 70 degC +- 2 K"]
+    assert main(["check", str(path), "--law", "hertz", *stated]) == 0
+    said = capsys.readouterr().out
+    assert "assumed: nothing" not in said
+    assert "held open: clearance of left 20 um +-3 um (as stated), clearance of right 10 um +-5 um (stated bare" in said
+    assert "70 degC" in said and "    temperature +-2 K (as stated)\n" in said
+    assert "    outer groove of right 0.515 to 0.53 of the ball (estimated from a catalogue)\n" in said

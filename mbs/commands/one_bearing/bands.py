@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -18,6 +19,8 @@ from mbs.scene.specs import BearingSpec, LocatingSpec
 from mbs.unknowns.held_open import held_open
 from mbs.unknowns.looks import Band
 from mbs.unknowns.of_variables import variable_bands
+from mbs.unknowns.statement import known
+from mbs.unknowns.words import open_lines
 
 NAME = "bearing"
 """How the bearing is called."""
@@ -26,7 +29,7 @@ _MATRICES = (("K", "stiffness", SPRING), ("C", "damping", DAMPER))
 _CONTACTS = (("pressure", "hertz_pressure", PRESSURE, np.argmax), ("film", "minimum_film", FILM, np.nanargmin))
 
 
-def scene_of(spec: BearingSpec | LocatingSpec, oil: Lubricant, temperature: float) -> Scene:
+def scene_of(spec: BearingSpec | LocatingSpec, oil: Lubricant, told: Description) -> Scene:
     """A scene of a bearing alone, to ask what is not known of it; it has no bodies.
 
     Parameters
@@ -35,10 +38,12 @@ def scene_of(spec: BearingSpec | LocatingSpec, oil: Lubricant, temperature: floa
         The bearing.
     oil : Lubricant
         Its oil.
-    temperature : float
-        Temperature of its raceways [K].
+    told : Description
+        Temperature of its raceways, and how well its numbers are known.
     """
-    return Scene(name=NAME, speed=0.0, temperature=temperature, lubricant=oil, bodies=(), elements=(spec,))
+    scene = Scene(name=NAME, speed=0.0, temperature=told.temperature, lubricant=oil, bodies=(), elements=(spec,))
+    # values are in force already
+    return known(scene, tuple(dataclasses.replace(one, value=None) for one in told.known))
 
 
 def turned(direction: tuple[float, float], angle: float) -> tuple[float, float]:
@@ -94,7 +99,7 @@ def point_lines(bands: dict[str, Band], scene: Scene) -> list[str]:
     """
     some = next(iter(bands.values()))
     refused = [line for line in lost_lines(some.of(None), [""]) if "not in the bands" in line]
-    return [*quantity_lines(list(_quantities(bands))), *refused, *about_lines(scene)]
+    return [*quantity_lines(list(_quantities(bands))), *refused, *open_lines(scene, ""), *about_lines(scene)]
 
 
 def _quantities(bands: dict[str, Band]) -> Iterator[Quantity]:

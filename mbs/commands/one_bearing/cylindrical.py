@@ -225,7 +225,7 @@ class BearingRequest:
         """The bearing as the only one of a scene, to ask what is not known of it."""
         bearing = self.bearing
         spec = BearingSpec(NAME, "", "", bearing.geometry, bearing.profile, bearing.slices)
-        return scene_of(spec, self.oil, self.temperature)
+        return scene_of(spec, self.oil, self.description)
 
     def again(self, scene: Scene) -> BearingRequest:
         """The same request of a scene that is a little different; a map from a file stays what it is.
@@ -394,6 +394,7 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
             tilts=False,
             assumed=_assumed(arguments, chosen, given, surface),
             state=state,
+            known=chosen.get("know", ()),
         ),
     )
 

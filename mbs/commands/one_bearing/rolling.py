@@ -107,6 +107,7 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
             tilts=arguments.tilts,
             assumed=assumed,
             oil=oil,
+            known=chosen.get("know", ()),
         ),
     )
 
@@ -136,7 +137,7 @@ def scene_as(request: Request) -> Scene:
     geometry, options = request.asked
     kind = TaperedSpec if "profile" in options else BallSpec
     spec = kind(NAME, "", "", geometry, **options)
-    return scene_of(spec, request.oil, request.description.temperature)
+    return scene_of(spec, request.oil, request.description)
 
 
 def bands_of(request: Request, points: list[list[Any]]) -> dict[str, Band]:

@@ -56,6 +56,11 @@ def read_choices(arguments: argparse.Namespace, problems: list[str]) -> dict[str
             )
         for value in choice.values(texts[:1], problems):
             chosen[choice.name] = value
+    for one in chosen.get("know", ()):
+        if one.bearing:
+            problems.append(f"--know: got {short(one.text)}; allowed: without a bearing, as there is one")
+        if one.value is not None:
+            chosen[one.group] = one.value
     return chosen
 
 
@@ -307,7 +312,7 @@ def refuse_others(
     own : sequence of str
         Further options that the bearing takes: profile, slices.
     """
-    given = [f"--{name}" for name in chosen if name not in taken]
+    given = [f"--{name}" for name in chosen if name not in (*taken, "know")]
     given += [
         f"--{side}-ring-temperature"
         for side in ("inner", "outer")

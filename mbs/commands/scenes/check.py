@@ -25,6 +25,7 @@ from mbs.scene.fields import DEGREE, HERTZ, MICROMETRE
 from mbs.scene.locating.ribs import open_sides
 from mbs.scene.scene import Scene
 from mbs.scene.specs import BearingSpec, LocatingSpec, RigidSpec, ShaftSpec
+from mbs.unknowns.words import open_list
 
 if TYPE_CHECKING:
     pass
@@ -41,6 +42,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     found = open_sides(scene)
     ends = [f"problem: {problem}" for problem in found] or ["no problem found"]
     physics = _physics(arguments, model)
+    lines += open_list(scene)
     return "\n".join([*lines, "", *_analyses(scene), *physics, *ends]), 1 if found else 0
 
 

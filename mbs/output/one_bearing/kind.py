@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -20,6 +20,9 @@ from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, Display, written
 from mbs.bearings.thermal import BearingState
 from mbs.life import required_viscosity
 from mbs.output.state_text import HIGHEST_LOAD, LOADED
+
+if TYPE_CHECKING:
+    from mbs.unknowns.statement import Statement
 
 Points = Sequence[Sequence[Any]]
 """Points of one kind, by load, then by speed."""
@@ -52,6 +55,8 @@ class Description:
         The oil; None where the points do not need it.
     state : BearingState or None
         Temperatures of the raceways, and what they make of the clearance; None where both have `temperature`.
+    known : tuple of Statement
+        Statements on how well numbers are known.
     """
 
     law: str
@@ -65,6 +70,7 @@ class Description:
     supply: OilSupply | None = None
     oil: Lubricant | None = None
     state: BearingState | None = None
+    known: tuple[Statement, ...] = ()
 
 
 class Number(NamedTuple):

@@ -73,7 +73,7 @@ def heading(kind: Kind, description: Description, point: Any) -> list[str]:
     return [
         f"{geometry.title}: law {description.law}; {description.films}",
         *(f"  {line}" for line in kind.about(description, point)),
-        f"  assumed: {', '.join(description.assumed) or 'nothing'}",
+        *([f"  assumed: {', '.join(description.assumed)}"] if description.assumed else []),
         *([f"  {geometry.estimated}"] if geometry.estimated else []),
     ]
 
