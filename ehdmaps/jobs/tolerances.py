@@ -62,7 +62,7 @@ TOLERATED: Mapping[str, Tolerated] = {
         ),
         Tolerated("preload", "N", 1e7, True, Display("N"), "20 N, or 10 %"),
         Tolerated("load", "", 0.0, True, Display("%", 100.0), "5 %"),
-        Tolerated("profile", "", 0.0, True, Display("%", 100.0), "0 %: as the scene has it"),
+        Tolerated("profile", "", 0.0, False, Display("%", 100.0), "0 %: as the scene has it"),
         Tolerated("cage_angle", "rad", 2.0 * math.pi, False, Display("deg", 180.0 / math.pi), "0 deg: as it starts"),
     )
 }
@@ -178,5 +178,5 @@ def read_tolerances(section: Table, names: tuple[str, ...] = tuple(TOLERATED)) -
 def _allowed(row: Tolerated) -> str:
     """Words on what a tolerance of a row may be, for messages."""
     ways = [f"0 to {row.display.text(row.most)}"] if row.unit else []
-    ways += [f"0 % to {100.0 * MOST:g} %"] if row.part else []
+    ways += [f"0 % to {100.0 * MOST:g} %"] if row.part else [] if row.unit else ["0 %"]
     return f"{', or '.join(ways)}, such as {row.examples}"

@@ -62,6 +62,7 @@ entrainment_speed = ["1 m/s"]
 )
 BATCH = f"[batch]\noils = ['FVA3']\nestimates = ['NU206']\n[grid]\nentrainment_speed = ['1 m/s']\n{_SOLVER}"
 SCENE = """
+[tolerances]
 [operation]
 gravity = ["0 m/s^2", "0 m/s^2", "-9.81 m/s^2"]
 [lubricant]

@@ -153,11 +153,11 @@ def test_scenes_have_it_and_say_so(tmp_path, capsys):
     scene = tmp_path / "machine.toml"
     scene.write_text(SCENE.format("6208 C3", 'diametral_clearance = "20 um"'))
     read = read_scene(scene)
-    assert read.balls[0].geometry.clearance == 19e-6
+    assert read.located[0].geometry.clearance == 19e-6
     assert read.bearings[0].geometry.diametral_clearance == 20e-6
     assert mbs_main(["check", str(scene), "--law", "hertz"]) == 0
     said = capsys.readouterr().out
-    assert "6208 (left): clearance not stated: C3 of ISO 5753-1, less a fit: 19 um, the middle of 5 to 33 um" in said
+    assert "clearance of left 5 to 33 um (not stated: C3 of ISO 5753-1, less a fit)" in said
     assert "NU308 (right): clearance as stated: C3 of the designation would be 45 to 70 um" in said
     other = assemble(read, "hertz", clearance=1e-5).scene
     assert {reach.taken for _, reach in other.clearance_ranges.values()} == {"stated"}
