@@ -8,7 +8,10 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
+from mbs.bearings.balls.ball_bearing import BallForce
+from mbs.bearings.balls.laws import dry_law
 from mbs.bearings.locating import locating_element
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_element import TaperedElement
@@ -75,3 +78,20 @@ def test_rollers_of_loose_rings_lie_in_the_cup() -> None:
     parts = np.linalg.solve(np.array([np.array(FORCE.shape.cup), -FORCE.shape.ribs.normals[0]]).T, [0.0, centrifugal])
     assert loads[0] == pytest.approx(0.0, abs=1e-6)
     np.testing.assert_allclose(loads[1:], np.repeat(parts[:, None], FORCE.geometry.rollers, 1), rtol=1e-6)
+
+
+@pytest.mark.parametrize("force", [FORCE, BallForce(ball_estimate("7208B"), dry_law(ball_estimate("7208B")))])
+def test_what_ring_and_speed_do_is_stored(force) -> None:
+    """On a path on which elements part and come back at a speed that does not change; error of 400 trapezoids."""
+    turn, speeds = np.linspace(0.0, 2.6, 401), (1200.0, 0.0)
+    path = np.zeros((turn.size, 6))
+    path[:, 0], path[:, 1], path[:, 5] = 25e-6 * np.cos(turn), 8e-6 * np.sin(2.0 * turn), 1e-4 * np.sin(turn)
+    last, forces, works, stored = np.zeros((force.angles.size, 4)), [], [], []
+    for pose in path:
+        forces.append(force(pose, inner_speed=speeds[0])[0])
+        works.append(force.work(speeds, last))
+        stored.append(force.stored())
+    ring = -np.sum(0.5 * (np.array(forces[1:]) + forces[:-1]) * np.diff(path, axis=0), axis=1)
+    gained, by_speed = stored[-1] - stored[0], float(np.sum(works[1:]))
+    assert abs(by_speed) > 1e-2 * abs(gained)
+    assert float(ring.sum()) + by_speed == pytest.approx(gained, abs=1e-4 * np.abs(ring).sum())
