@@ -198,10 +198,9 @@ def test_memory_needs_films():
         )
 
 
-def model(law, films):
-    """A rigid shaft in two bearings, with rollers that are bodies."""
+def test_each_contact_of_a_scene_has_the_law_of_its_raceway(small_map):
     scene = read_scene("nu308_rigid")
-    bearings = [
-        dataclasses.replace(entry, rollers_as_bodies=True, centrifugal=True, slices=5) for entry in scene.bearings
-    ]
-    return assemble(scene.with_bearings(bearings), law=law, films=films)
+    bearings = [dataclasses.replace(entry, rollers_as_bodies=True, slices=5) for entry in scene.bearings]
+    entry = assemble(scene.with_bearings(bearings), "map", small_map).system.elements[0].element
+    for contact, name in zip(entry.contacts.laws, ("inner", "outer"), strict=True):
+        assert [one.name for one in contact.contacts] == [contact.kind] == [name]
