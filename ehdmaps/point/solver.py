@@ -10,6 +10,7 @@ import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -376,11 +377,12 @@ def heated_solution(solution: PointSolution, lubricant: Lubricant) -> PointSolut
         number: Estimate = getattr(solution, name)
         cold |= {name: float(number), f"{name}_error": number.error}
     warm = heated_point(cold, heat, float(solution.ellipse.stiffness(solution.load)))
+    numbers: dict[str, Any] = {name: Estimate(float(warm[name][0]), float(warm[f"{name}_error"][0])) for name in WARM}
     return dataclasses.replace(
         solution,
         reason="; ".join(filter(None, (solution.reason, heat.of(0).note))),
         response=None,
         field=None,
         groups=None,
-        **{name: Estimate(float(warm[name][0]), float(warm[f"{name}_error"][0])) for name in WARM},
+        **numbers,
     )

@@ -10,6 +10,7 @@ import numpy as np
 
 from ehdmaps.errors import AnalysisError, InputError, SolverError
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.point.film_formulas import POINT_FILMS, point_films
 from ehdmaps.physics.solids import STEEL
@@ -53,7 +54,7 @@ def _read(arguments: argparse.Namespace, chosen: Mapping[str, Any], problems: li
     return Asked(geometry, {})
 
 
-def _words_of(law: str, oil: Lubricant, _: Surface, damper: Damper, heat: bool) -> tuple[str, str]:
+def _words_of(law: str, oil: Lubricant, _: Surface, damper: Damper, heat: bool, flooded: OilSupply) -> tuple[str, str]:
     """Law and films."""
     if law:
         return f"films of {oil.title}, {point_films(heat)}, {_SOURCES[law]}", "films of the law"

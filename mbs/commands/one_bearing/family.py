@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import Surface
 from mbs.output.one_bearing.kind import Description, Kind
 from mbs.scene.contact_laws import Damper
@@ -77,6 +78,8 @@ class Request:
         Whether heat in the inlet thins the films.
     oil : Lubricant
         Oil of the films.
+    supply : OilSupply
+        Oil supply of the contacts with films.
     surface : Surface
         Surfaces of the contacts with films; smooth where a roughness is only assumed.
     operating : Operating
@@ -95,6 +98,7 @@ class Request:
     memory: bool
     inlet_heat: bool
     oil: Lubricant
+    supply: OilSupply
     surface: Surface
     operating: Operating
     description: Description
@@ -135,7 +139,7 @@ class Family:
     force : callable
         (asked, damper) -> force with the dry law.
     words_of : callable
-        (law with films or empty, oil, surface, damper, heat in the inlet) -> law, and films, in words.
+        (law with films or empty, oil, surface, damper, heat in the inlet, oil supply) -> law, and films, in words.
     films : callable
         (request) -> law with the films of an entrainment speed [m/s]; None without any.
     at_speed : callable
@@ -160,7 +164,7 @@ class Family:
     read: Callable[[argparse.Namespace, Mapping[str, Any], list[str]], Asked | None]
     axial_problem: Callable[[Any, float], str]
     force: Callable[[Asked, Damper], Any]
-    words_of: Callable[[str, Lubricant, Surface, Damper, bool], tuple[str, str]]
+    words_of: Callable[[str, Lubricant, Surface, Damper, bool, OilSupply], tuple[str, str]]
     films: Callable[[Request], Callable[[float], PairLaw] | None]
     at_speed: Callable[[Request], Callable[[float], AtSpeed]]
     point: type[LocatingPoint]

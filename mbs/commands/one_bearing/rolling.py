@@ -8,9 +8,11 @@ import math
 from functools import cache
 from typing import Any
 
+from ehdmaps.choices import SUPPLY
 from ehdmaps.errors import AnalysisError, InputError, SolverError
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.physics.lubricant import DEFAULT_OIL
+from ehdmaps.physics.oil_supply import FLOODED
 from ehdmaps.units import TEMPERATURE
 from mbs.analyses.bearing_point import points_over, without_holes
 from mbs.commands.one_bearing.bands import NAME, point_bands, scene_of, turned
@@ -71,14 +73,18 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
     damper = Damper() if films else read_damper(law, family.words, more, problems)
     temperature = float(chosen.get("temperature", CELSIUS_40))
     oil = read_oil(arguments.oil, temperature, problems)
-    heat = read_heat(chosen, oil, "" if films else f"with dry contacts; allowed: with --law {TABLE_LAW}", problems)
+    dry = f"with dry contacts; allowed: with --law {TABLE_LAW}"
+    heat = read_heat(chosen, oil, "" if films else dry, problems)
+    supply = chosen.get(SUPPLY.name, FLOODED)
+    if SUPPLY.name in chosen and not films:
+        problems.append(f"--{SUPPLY.name}: got {supply.label} {dry}")
     problems += output_problems((*bearing_outputs(arguments.output), Output("--plot", arguments.plot, FIGURE)), [])
     counts = len(operating.loads), len(operating.speeds)
     problems += count_problems(arguments.output, *counts, of_one_load=is_export(arguments.output))
     if problems or asked is None or damper is None or oil is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     surface, roughness, for_lambda = read_surface(chosen)
-    words, source = family.words_of(films, oil, surface, damper, heat)
+    words, source = family.words_of(films, oil, surface, damper, heat, supply)
     with_clearance = "clearance" in family.taken
     assumed = (
         *([f"temperature {TEMPERATURE.text(CELSIUS_40)}"] if "temperature" not in chosen else []),
@@ -96,6 +102,7 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
         memory=chosen.get("films") == "memory",
         inlet_heat=heat,
         oil=oil,
+        supply=supply,
         surface=surface,
         operating=operating,
         description=Description(
