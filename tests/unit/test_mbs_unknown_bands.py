@@ -13,12 +13,14 @@ import xarray as xr
 from ehdmaps.errors import AnalysisError
 from ehdmaps.jobs.tolerances import Tolerance
 from mbs.analyses.modes import modes
+from mbs.analyses.sweep import SweepSettings, critical
 from mbs.cli import main
 from mbs.linearised.pairs import in_order
 from mbs.output.band_text import bounds_text, deserved, exact_text, lost_lines, value_text
 from mbs.scene.assembly import assemble
 from mbs.scene.changes import with_temperature
 from mbs.scene.reader import read_scene
+from mbs.settings import SweepRange
 from mbs.unknowns.looks import Band, Term, band
 from mbs.unknowns.unknown import Unknown
 from tests.benchmarks import coverage
@@ -208,3 +210,21 @@ def test_most_of_drawn_machines_are_inside():
     for values, own in zip(np.swapaxes(truths, 0, 1), (bands.frequency, bands.damping_ratio), strict=True):
         inside = (values >= own.low) & (values <= own.high)
         assert inside.mean() > 0.7
+
+
+@pytest.mark.slow  # three sweeps with their critical speeds
+def test_critical_speeds_move_as_those_of_the_changed_machine(rigid, monkeypatch):
+    """To first order; what is left of a small change is of second order, a tenth of it at most."""
+    speeds = SweepSettings(SweepRange(850.0, 1150.0, 3))
+    looks = tuple(with_temperature(rigid.scene, rigid.scene.temperature + by) for by in (-1.0, 1.0))
+    one = Unknown("temperature", "temperature", "+-1 K", "", looks)
+    monkeypatch.setattr("mbs.unknowns.of_modes.held_open", lambda scene: (one,))
+    found = critical(rigid, speeds)
+    low, high = found.bounds[0, :2]
+    numerics = found.sweep.damped.frequency_error[1, 0] / found.sweep.damped.frequency[1, 0]
+    moved = sorted(critical(rigid.again(scene), speeds).found[0].speed for scene in looks)
+    true = np.array([moved[0], moved[-1]]) - found.found[0].speed
+    told = np.array([low, high]) - found.found[0].speed
+    assert found.found and np.all(np.abs(true) > 0.0)
+    slack = 0.1 * np.abs(true) + 2.0 * numerics * found.found[0].speed
+    assert np.all(np.abs(told - true) <= slack)
