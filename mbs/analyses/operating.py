@@ -130,10 +130,19 @@ def settled(models: Sequence[Model], speed: float, highest: float | None = None)
         return found
     while max(_felt(model, speed, highest) for model in found) > FELT:
         try:
-            found = [with_bodies(model, [_raised(body) for body in model.scene.bodies]) for model in found]
+            found = [
+                with_bodies(model, [_raised(body, _top(model, highest)) for body in model.scene.bodies])
+                for model in found
+            ]
         except InputError:  # beyond the theory of beams
             break
     return [_closed(model) for model in found]
+
+
+def _top(model: Model, highest: float | None) -> float:
+    """Frequency up to which modes are looked at [Hz]."""
+    scene = model.scene
+    return max(scene.frequencies, default=scene.campbell.highest) if highest is None else highest
 
 
 def _felt(model: Model, speed: float, highest: float | None) -> float:
@@ -142,12 +151,11 @@ def _felt(model: Model, speed: float, highest: float | None) -> float:
     from mbs.linearised.modes import free_motions, undamped_modes
     from mbs.linearised.reduction import undamped_part
 
-    scene = model.scene
-    top = max(scene.frequencies, default=scene.campbell.highest) if highest is None else highest
+    top = _top(model, highest)
     balance = equilibrium(steady_system(model.system), Operation(speed))
     modes = undamped_modes(balance)
     seen = (modes.frequency <= top) & ~free_motions(modes.frequency)
-    shafts = [body.name for body in scene.bodies if _is_open(body)]
+    shafts = [body.name for body in model.scene.bodies if _is_open(body)]
     moved = undamped_part(balance.system, modes.frequency[seen], modes.shapes[:, seen], shafts)
     return float(np.max(np.abs(moved), initial=0.0))
 
@@ -157,11 +165,21 @@ def _is_open(body: BodySpec) -> bool:
     return isinstance(body, ShaftSpec) and not body.cutoff_stated
 
 
-def _raised(body: BodySpec) -> BodySpec:
-    """An open shaft with twice its cut-off; other bodies as they are."""
+def _raised(body: BodySpec, highest: float) -> BodySpec:
+    """An open shaft with twice its cut-off; other bodies as they are.
+
+    Where that takes too many elements they are as long as the waves of the highest frequency that is looked at allow:
+    of modes above, what is static counts.
+    """
     if not (isinstance(body, ShaftSpec) and not body.cutoff_stated and body.cutoff is not None):
         return body
-    return dataclasses.replace(body, cutoff=2.0 * body.cutoff)
+    try:
+        return dataclasses.replace(body, cutoff=2.0 * body.cutoff)
+    except InputError:
+        from mbs.flexible.shaft_parts import longest_element
+
+        longest = body.largest_element or longest_element(body.sections, highest)
+        return dataclasses.replace(body, cutoff=2.0 * body.cutoff, largest_element=longest)
 
 
 def _closed(model: Model) -> Model:

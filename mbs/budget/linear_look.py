@@ -93,7 +93,7 @@ class LinearDifferences:
         Parameters
         ----------
         several : sequence of LinearDifferences
-            At least one, beside the same reference.
+            Differences of at least one system, all beside the same reference.
         """
         parts = (np.array([getattr(one, entry.name) for one in several]) for entry in fields(cls))
         return cls(*(_largest(part) for part in parts))
@@ -206,7 +206,7 @@ def linear_look(model: Model, angle: float = 0.0, cage_angles: int = CAGE_ANGLES
 def _largest(values: FloatArray) -> FloatArray:
     """Of each column of values the one of largest size, with its sign; NaN where one is."""
     if not values.size:
-        return values[0]
+        return np.zeros(values.shape[1:])
     at = np.argmax(np.where(np.isnan(values), np.inf, np.abs(values)), axis=0)
     return np.asarray(np.take_along_axis(values, at[None], axis=0)[0])
 

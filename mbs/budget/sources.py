@@ -76,7 +76,7 @@ def open_rows(base: Subject, model: Model, beside: LinearReference) -> list[Choi
     model : Model
         Model of the scene.
     beside : LinearReference
-        What it is compared with.
+        Reference of the rows.
     """
     group, rows = Group(UNKNOWN, base), []
     for unknown in held_open(model.scene):
@@ -92,7 +92,7 @@ def open_rows(base: Subject, model: Model, beside: LinearReference) -> list[Choi
 
 
 def open_runs(base: Subject, model: Model) -> list[Tried]:
-    """What a scene leaves open that runs in time are tried with: the upper ends of temperature, and of all clearances.
+    """Choices of what a scene leaves open for runs in time: the upper ends of its temperature, and of all clearances.
 
     Parameters
     ----------
@@ -112,9 +112,8 @@ def open_runs(base: Subject, model: Model) -> list[Tried]:
 
 def _looser(scene: Scene, other: Scene) -> Scene:
     """The scene with the clearances of another one of the same bearings, where these are larger."""
-    own = {entry.name: clearance_of(entry) for entry in (*scene.bearings, *scene.located)}
-    for entry in (*other.bearings, *other.located):
-        value, least = clearance_of(entry), own[entry.name]
+    for own, entry in zip(scene.of_all_kinds, other.of_all_kinds, strict=True):
+        least, value = clearance_of(own), clearance_of(entry)
         if value is not None and least is not None and value > least:
             scene = with_clearance_of(scene, entry.name, value)
     return scene

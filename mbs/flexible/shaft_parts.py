@@ -346,18 +346,13 @@ def divide(
     InputError
         For too many elements, and a cut-off beyond the theory of beams.
     """
-    marks = sorted([*(place for section in sections for place in (section.begin, section.end)), *places])
-    steps = [marks[0]]
-    for mark in marks:
-        if mark - steps[-1] > TOGETHER:
-            steps.append(mark)
-    spans = [_Span.of(sections, begin, end) for begin, end in pairwise(steps)]
+    spans = _spans(sections, places)
     if cutoff is not None and all(wave_length(span.at(0.5), cutoff) < span.diameter for span in spans):
         raise InputError(
             f"cutoff: got {cutoff:.6g} Hz, where bending waves are shorter than the diameter all along the shaft; "
             "allowed: where sections stay plane, at waves of a few diameters; lower it"
         )
-    nodes = [steps[0]]
+    nodes = [spans[0].begin]
     elements: list[CrossSection | Along] = []
     for span in spans:
         longest = largest_element or (0.5 * span.diameter if cutoff is None else span.longest(cutoff))
@@ -373,6 +368,29 @@ def divide(
         nodes += np.linspace(span.begin, span.end, count + 1)[1:].tolist()
         elements += [span.piece(index, count) for index in range(count)]
     return nodes, elements
+
+
+def longest_element(sections: Sequence[Section], frequency: float) -> float:
+    """Longest element that bending waves of a frequency [Hz] allow all along a shaft [m], to `WAVE_ERROR`.
+
+    Parameters
+    ----------
+    sections : sequence of Section
+        Cylinders and cones.
+    frequency : float
+        [Hz].
+    """
+    return min(span.longest(frequency) for span in _spans(sections, ()))
+
+
+def _spans(sections: Sequence[Section], places: Sequence[float]) -> list[_Span]:
+    """Spans between all places at which anything begins, ends or sits."""
+    marks = sorted([*(place for section in sections for place in (section.begin, section.end)), *places])
+    steps = [marks[0]]
+    for mark in marks:
+        if mark - steps[-1] > TOGETHER:
+            steps.append(mark)
+    return [_Span.of(sections, begin, end) for begin, end in pairwise(steps)]
 
 
 @dataclass(frozen=True)

@@ -134,8 +134,9 @@ def over_pitch(balance: Equilibrium, count: int) -> tuple[Equilibrium, ...]:
     system, operation = balance.system, balance.operation
     equilibria = [balance]
     for part in range(1, count):
-        elements = [connected.element for connected in system.elements]
-        passed = [one.passed(part / count) if isinstance(one, OnRings) else one for one in elements]
+        passed: list[Any] = [connected.element for connected in system.elements]
+        for index in system.select(OnRings):
+            passed[index] = passed[index].passed(part / count)
         equilibria.append(equilibrium(system.with_elements(passed), operation, equilibria[-1].displacement))
     return tuple(equilibria)
 

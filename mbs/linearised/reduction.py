@@ -111,7 +111,8 @@ def reduction_part(
     """
     if all(body.left_out is None for body in system.bodies):
         return None
-    change = left_out(system, eigenvalues, right, np.linalg.solve(system.mass.T, left.T).T)
+    rows = np.asarray(np.linalg.solve(system.mass.T, left.T).T, dtype=np.complex128)
+    change = left_out(system, eigenvalues, right, rows)
     size, moved = np.abs(eigenvalues), np.abs(eigenvalues + change)
     ratios = [
         -values.real / np.where(of > 0.0, of, 1.0)

@@ -11,6 +11,9 @@ import pytest
 
 from ehdmaps.errors import InputError
 from mbs import assemble, cli, modes, parse_scene, read_scene, statics
+from mbs.linearised.modes import undamped_modes
+from mbs.model.elements import Operation
+from mbs.model.equilibrium import equilibrium
 from mbs.scene.shafts.new import new_shaft
 from mbs.scene.shafts.rows import csv_rows, csv_sections
 from tests.conformance.test_shipped import SHORTER
@@ -183,6 +186,26 @@ def test_a_pinned_rod_has_the_frequencies_of_euler_and_bernoulli():
     # Shear and rotary inertia take (pi n d/(4 L))^2 (1 + E/(kappa G))/2: 1.2e-4 of the first, four times that next.
     np.testing.assert_allclose(found[:4], [first, first, 4.0 * first, 4.0 * first], rtol=6e-4)
     np.testing.assert_allclose(found[:2], first, rtol=1.5e-4)
+
+
+def test_a_cut_off_that_nobody_states_is_one_that_modes_do_not_feel():
+    overhung = PINNED.replace('cutoff = "1 kHz"\n', "").replace('"1 m"', '"0.93 m"').replace('"10 mm"', '"40 mm"')
+    scene, highest = scene_of(overhung), 3000.0
+
+    def model(**changed):
+        return assemble(dataclasses.replace(scene, bodies=[dataclasses.replace(scene.bodies[0], **changed)]))
+
+    # at rest and without damping
+    beams = model(cutoff=None, largest_element=0.005, cutoff_stated=True).system
+    whole = undamped_modes(equilibrium(beams, Operation())).frequency
+    stated, raised = modes(model(cutoff_stated=True), highest=highest), modes(model(), highest=highest)
+    assert [one.model.scene.bodies[0].cutoff for one in (stated, raised)] == [5e3, 1e4]
+    seen = slice(int(np.count_nonzero(whole <= highest)))
+    assert np.max(stated.modes.frequency[seen] / whole[seen] - 1.0) > 0.04
+    # what is not felt, and the waves of the elements
+    assert np.max(np.abs(raised.modes.frequency[seen] / whole[seen] - 1.0)) < 5e-4 + 1e-4
+    assert np.max(np.abs(raised.modes.reduction.frequency / raised.modes.frequency)[seen]) < 5e-4
+    assert scene_of(overhung.replace("40 mm", "5 m")).bodies[0].cutoff is None
 
 
 def test_a_rotor_of_laval_has_the_frequency_of_its_disc_on_the_shaft():
