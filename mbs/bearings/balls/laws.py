@@ -59,16 +59,7 @@ class BallLaw:
         return self.inner.table.size == 0 and self.outer.table.size == 0
 
     def springs_on(self, side: int, law: NormalLaw, table: FloatArray) -> FloatArray:
-        """Springs of films with memory at the rows of a table, see `ContactResponse.in_time`.
-
-        Parameters
-        ----------
-        side : int
-            0 the inner contact.
-        law : NormalLaw
-            Law of the table.
-        table : array (rows, 4)
-            The table.
+        """Springs of `ContactResponse.in_time`, see `PairLaw.springs_on` of `mbs.bearings.locating.film_tables`.
 
         Raises
         ------

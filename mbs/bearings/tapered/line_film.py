@@ -69,17 +69,7 @@ class LineFilms:
         return inner, outer
 
     def springs_on(self, side: int, law: NormalLaw, table: FloatArray) -> FloatArray:
-        """K [N/m] and theta [s] of a spring in series with the damper of slow motion at the rows of a table, (rows, 2).
-
-        Parameters
-        ----------
-        side : int
-            0 the inner contact.
-        law : NormalLaw
-            Law of the table.
-        table : array (rows, 4)
-            The table.
-        """
+        """K [N/m] and theta [s] of a spring in series with the damper of slow motion, see `PairLaw.springs_on`."""
         from mbs.bearings.slices_in_balance import relaxation_times  # with the kernels of films with memory
 
         approach, _, damping = on_rows(law, table)
