@@ -68,9 +68,6 @@ TOLERATED: Mapping[str, Tolerated] = {
 }
 """Keys of [tolerances], in the order of the reference."""
 
-OF_JOBS = ("viscosity", "pressure_viscosity", "geometry")
-"""Those that jobs of maps have: what their estimates are made of."""
-
 
 @dataclass(frozen=True)
 class Tolerance:
@@ -153,18 +150,16 @@ def split(text: str) -> tuple[str, str]:
     return value.strip(), tolerance.strip()
 
 
-def read_tolerances(section: Table, names: tuple[str, ...] = tuple(TOLERATED)) -> dict[str, Tolerance]:
+def read_tolerances(section: Table) -> dict[str, Tolerance]:
     """Read [tolerances]; whoever calls closes it.
 
     Parameters
     ----------
     section : Table
         The table.
-    names : tuple of str
-        Keys that the file may have.
     """
     found = {}
-    for name in names:
+    for name in TOLERATED:
         text = section.get(name)
         if name not in section:
             continue

@@ -114,7 +114,7 @@ def heading(model: Model, speed: float | None = None) -> list[str]:
 
 
 def assumed_words(scene: Scene) -> str:
-    """What a scene marks as assumed; "nothing" only where nothing is held open, else empty."""
+    """Words on what a scene marks as assumed; "nothing" only where nothing is held open, else empty."""
     if scene.assumed:
         return f"{len(scene.assumed)} keys of the scene, marked there"
     return "" if scene.has_bearings else "nothing"

@@ -81,7 +81,7 @@ def profiles(scene: Scene) -> Iterator[Unknown]:
 
 
 def _changed(scene: Scene, name: str, values: dict[str, Any]) -> Callable[[], Scene]:
-    """What makes the scene with other parts of the geometry of a bearing, which is no estimate then."""
+    """Maker of the scene with other parts of the geometry of a bearing, which is no estimate then."""
 
     def changed(entry: Any) -> Any:
         return dataclasses.replace(entry, geometry=dataclasses.replace(entry.geometry, estimated=None, **values))

@@ -211,7 +211,7 @@ def _cages(scene: Scene) -> Iterator[Unknown]:
 
 
 def _turned(angle: float) -> Callable[[BearingSpec | LocatingSpec], BearingSpec | LocatingSpec]:
-    """What gives a bearing another angle of its cage."""
+    """Change of a bearing to another angle of its cage."""
     return lambda entry: dataclasses.replace(entry, start_angle=angle)
 
 
@@ -221,7 +221,7 @@ def _with_offset(scene: Scene, bearing: str, offset: float) -> Scene:
 
 
 def _at(change: Callable[..., Scene], *values: object) -> Callable[[], Scene]:
-    """What makes a changed scene when it is asked for."""
+    """Maker of a changed scene, called when it is asked for."""
     return lambda: change(*values)
 
 

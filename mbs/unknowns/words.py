@@ -26,7 +26,7 @@ def open_lines(scene: Scene, more: str = "; each is listed by mbs check") -> lis
     scene : Scene
         The scene, with the values in force.
     more : str
-        Where the rest is told.
+        Words on where the rest is told.
 
     Examples
     --------
@@ -45,7 +45,7 @@ def open_words(scene: Scene, more: str = "") -> list[str]:
     scene : Scene
         The scene, with the values in force.
     more : str
-        Where the rest is told.
+        Words on where the rest is told.
     """
     unknowns = held_open(scene)
     first, second = (_together(one for one in unknowns if one.group in groups) for groups in (_FIRST, _SECOND))
@@ -73,7 +73,7 @@ def open_list(scene: Scene) -> list[str]:
 
 
 def missing_words(scene: Scene) -> str:
-    """What no band of a scene holds.
+    """Words on what no band of a scene holds.
 
     Parameters
     ----------
