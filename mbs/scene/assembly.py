@@ -131,7 +131,8 @@ def _built(given: _ByContent) -> Body:
         from mbs.scene.flexible import build_flexible
 
         body = build_flexible(spec)
-    shared = (body.mass, body.gyroscopic, body.damping, body.stiffness)
+    left_out = () if body.left_out is None else (body.left_out,)
+    shared = (body.mass, body.gyroscopic, body.damping, body.stiffness, *left_out)
     for array in (*shared, *(part for frame in body.frames.values() for part in (frame.position, frame.transform))):
         array.setflags(write=False)  # several systems have it
     return body

@@ -10,7 +10,7 @@ from scipy.sparse.linalg import ArpackError
 from ehdmaps.errors import AnalysisError, InputError
 from mbs.flexible import held_body
 from mbs.flexible.finite_elements import FiniteElementModel
-from mbs.flexible.reduced_body import ReducedBody, to_body
+from mbs.flexible.reduced_body import ReducedBody, to_body, up_to
 from mbs.flexible.reduced_file import read_reduced, write_reduced
 from mbs.flexible.reduction import Interface, nodes_in_plane, reduce
 from mbs.model.body import Frame
@@ -214,6 +214,12 @@ class TestFiles:
         found = read_reduced(first)
         assert np.array_equal(found.mass, reduced.mass)
         assert np.array_equal(found.stiffness, reduced.stiffness)
+        assert np.array_equal(found.left_out, reduced.left_out) and found.cutoff == 20e3
+        # modes that are dropped are left out as if they had never been kept: accuracy of static shapes and modes
+        fewer = up_to(found, 12e3)
+        other = reduce(model, ends(model), cutoff=12e3)
+        assert fewer.size == other.size < found.size
+        np.testing.assert_allclose(fewer.left_out, other.left_out, rtol=0.0, atol=1e-7 * np.abs(other.left_out).max())
         assert (found.coordinates, found.units) == (reduced.coordinates, reduced.units)
         assert dict(found.attributes) == dict(reduced.attributes)
         for name, frame in reduced.frames.items():
