@@ -139,7 +139,19 @@ def test_films_where_the_law_knows_them(here, capsys, formula_map, law):
         assert np.all(data["minimum_film"].sel(contact="inner") < data["minimum_film"].sel(contact="outer"))
         films = data["central_film"].values
     # `mbs bearing` at the same load, between two rollers as there, says the same.
-    bearing = ("bearing", "NU308", "--load", "141.421356 N", "--direction", "1", "1", "--speed", "500 rpm")
+    bearing = (
+        "bearing",
+        "NU308",
+        "--clearance",
+        "0 um",
+        "--load",
+        "141.421356 N",
+        "--direction",
+        "1",
+        "1",
+        "--speed",
+        "500 rpm",
+    )
     assert run(capsys, *bearing, *options, "-o", "b.nc")[0] == 0
     with xr.open_dataset("b.nc") as data:
         # The formula's law is made over other ranges there: its table's error.
