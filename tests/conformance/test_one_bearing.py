@@ -41,7 +41,7 @@ def test_one_bearing(name, capsys, tmp_path, monkeypatch):
     """The same names, units and words for all, and files that say the same as the page."""
     monkeypatch.chdir(tmp_path)
     ask = (name, "--load", "2 kN", "--speed", "1500 rpm", "--law", "hertz:1.25e-5 s", *KINDS[name])
-    status, page, err = run(capsys, "bearing", *ask, "-o", "a.nc", "--plot", "a.png")
+    status, page, err = run(capsys, "bearing", *ask, "-o", "a.nc")
     assert status == 0, err
     with xr.open_dataset("a.nc") as data:
         data.load()
@@ -58,7 +58,6 @@ def test_one_bearing(name, capsys, tmp_path, monkeypatch):
         assert copy.attrs["comment"].startswith(f"copy of {new}: the next release has no ")
     for words in (f"{element}s carry more than 1 %", "damping, low-frequency limit", "Lambda", "assumed: "):
         assert words in page
-    assert (tmp_path / "a.png").stat().st_size > 10_000
     status, table, err = run(capsys, "bearing", *ask, "--speed", "3000 rpm", "-o", "a.csv", "--plot", "b.svg")
     assert status == 0, err
     heads = next(line for line in table.splitlines() if "K along" in line).split()
