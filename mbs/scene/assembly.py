@@ -31,7 +31,7 @@ from mbs.scene import kinds
 from mbs.scene.changes import with_clearance
 from mbs.scene.contact_laws import NO_LAW, ContactLaws, dry_reason, law_in_force, supply_words, surface_label
 from mbs.scene.kinds import ElementKind
-from mbs.scene.map_set import MapSet, again_from_table
+from mbs.scene.map_set import OTHER_OIL, MapSet, again_from_table
 from mbs.scene.oils import oil_warnings
 from mbs.scene.scene import Scene
 from mbs.scene.surroundings import Built, Surroundings
@@ -289,12 +289,14 @@ class Model:
         Raises
         ------
         InputError
-            With everything that does not fit together, such as a map of other rollers.
+            With everything that does not fit together, such as a map from a file with other rollers or another oil.
         """
         recipe = self.recipe
         maps = recipe.maps
         if maps is not None and all(emap.from_table for emap in maps.maps):
             maps = again_from_table(maps, scene)
+        elif maps is not None and scene.lubricant != self.scene.lubricant:
+            raise InputError(OTHER_OIL)
         model = assemble(scene, recipe.law, maps, films=recipe.films, supply=recipe.supply)
         return dataclasses.replace(model, chosen=self.chosen)
 

@@ -31,6 +31,9 @@ _LABELS = {"reynolds": "Reynolds map", "openfoam": "OpenFOAM map", "formula": "f
 TABLE_LAW = "table"
 """The law of films from the film table: that of maps that `table_maps` makes in memory."""
 
+OTHER_OIL = "--map: holds the films of one oil; make a map of another, or leave it out: the film table has them"
+"""What is said where a map from a file would need another oil."""
+
 _SPEEDS, _BEYOND = (0.05, 10.0), 1.05
 """Entrainment speeds of laws that are made for a scene [m/s], and how far they go beyond a scene that is faster."""
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from ehdmaps.errors import AnalysisError
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.jobs.tolerances import Tolerance
 from mbs.analyses.modes import modes
 from mbs.analyses.sweep import SweepSettings, critical
@@ -21,6 +21,7 @@ from mbs.scene.assembly import assemble
 from mbs.scene.changes import with_temperature
 from mbs.scene.reader import read_scene
 from mbs.settings import SweepRange
+from mbs.unknowns import held_open
 from mbs.unknowns.looks import Band, Term, band
 from mbs.unknowns.unknown import Unknown
 from tests.benchmarks import coverage
@@ -125,6 +126,14 @@ def test_a_look_is_the_machine_made_anew(rigid):
     assert rigid.again(warmer).recipe.maps.maps[0] is rigid.recipe.maps.maps[0]
 
 
+@pytest.fixture
+def few_unknowns(monkeypatch):
+    """Clearances and temperature alone are open: other looks cost seconds."""
+    for name in ("_alpha", "profiles", "_cages"):
+        monkeypatch.setattr(held_open, name, lambda *given: ())
+
+
+@pytest.mark.usefixtures("few_unknowns")
 def test_modes_have_bands_in_files(rigid, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main(["modes", "nu308_rigid", "--bands", "all", "-o", "all.nc"]) == 0
@@ -168,6 +177,7 @@ def test_a_look_at_one_bearing_is_the_command_with_another_clearance(tmp_path, m
     ],
     ids=["statics", "lsa", "sweep", "critical"],
 )
+@pytest.mark.usefixtures("few_unknowns")
 def test_results_lie_within_their_bands(asked, names, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main([asked[0], "nu308_rigid", *asked[1:], "--bands", "all", "-o", "all.nc"]) == 0
@@ -190,7 +200,7 @@ def whole(rigid):
 def test_a_statement_never_widens_a_band(group, rigid, whole):
     """What is stated to be exact leaves the other terms as they are: bounds come nearer, whichever they are."""
     exact = Tolerance(0.0, False, "0")
-    scene = dataclasses.replace(rigid.scene, tolerances={group: exact})
+    scene = dataclasses.replace(rigid.scene, tolerances={**rigid.scene.tolerances, group: exact})
     less = modes(rigid.again(scene)).bands_to(3000.0)
     assert group in {term.group for term in whole.frequency.terms}
     assert group not in {term.group for term in less.frequency.terms}
@@ -228,3 +238,11 @@ def test_critical_speeds_move_as_those_of_the_changed_machine(rigid, monkeypatch
     assert found.found and np.all(np.abs(true) > 0.0)
     slack = 0.1 * np.abs(true) + 2.0 * numerics * found.found[0].speed
     assert np.all(np.abs(told - true) <= slack)
+
+
+def test_a_map_from_a_file_has_one_oil(formula_maps):
+    """What a band cannot look at is named in it, and not taken as nothing."""
+    model = assemble(read_scene("nu308_rigid"), emap=formula_maps["NU308"])
+    other = dataclasses.replace(model.scene, lubricant=model.scene.lubricant.with_alpha(1.1, 313.15))
+    with pytest.raises(InputError, match="holds the films of one oil"):
+        model.again(other)

@@ -61,7 +61,7 @@ from mbs.scene.contact_laws import (
     table_problems,
 )
 from mbs.scene.fields import MICROMETRE
-from mbs.scene.map_set import TABLE_LAW, geometry_problems, structure_words
+from mbs.scene.map_set import OTHER_OIL, TABLE_LAW, geometry_problems, structure_words
 from mbs.scene.scene import Scene
 from mbs.scene.specs import BearingSpec
 from mbs.unknowns.looks import Band
@@ -242,8 +242,10 @@ class BearingRequest:
             structure = emap.structural_law
             made = _table_map(spec.geometry, oil, bearing.material, self.speeds, kelvin, emap.inlet_heat)
             emap = made.with_structure(structure)
-        elif emap is not None and (wrong := geometry_problems("the bearing", spec.geometry, emap)):
-            raise InputError(wrong)
+        elif emap is not None:
+            wrong = geometry_problems("the bearing", spec.geometry, emap)
+            if wrong := [*wrong, *([OTHER_OIL] if scene.lubricant != self.oil else [])]:
+                raise InputError(wrong)
         contacts = spec.geometry.contacts(bearing.material, "iso16281")
         return dataclasses.replace(
             self,
