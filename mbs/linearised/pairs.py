@@ -2,7 +2,8 @@
 
 Modes are paired by their shapes in the coordinates that both systems have, weighted with the mass (modal assurance), so
 that the sum of all assurances is largest. Two modes of nearly one frequency, as those of the two planes of a shaft,
-have no shapes of their own: a small change turns both. Such a pair is taken by the order of its frequencies.
+have no shapes of their own: a small change turns both. Such a pair, which is damped alike, is taken by the order of its
+frequencies.
 """
 
 from __future__ import annotations
@@ -48,13 +49,19 @@ def partners(system: System, shapes: ComplexArray, other: System, others: Comple
     return found
 
 
-def in_order(frequency: FloatArray, partner: IntArray, found: FloatArray) -> IntArray:
+ALIKE = 2.0
+"""Factor of damping ratios up to which two such modes are those of two planes, and no others that meet."""
+
+
+def in_order(frequency: FloatArray, damping_ratio: FloatArray, partner: IntArray, found: FloatArray) -> IntArray:
     """Partners with those of nearly equal frequencies in the order of their own frequencies.
 
     Parameters
     ----------
     frequency : array, shape (modes,)
         Frequencies of the reference, rising [Hz].
+    damping_ratio : array, shape (modes,)
+        Damping ratios of these.
     partner : array, shape (modes,)
         What `partners` finds.
     found : array, shape (modes of the other system,)
@@ -64,7 +71,9 @@ def in_order(frequency: FloatArray, partner: IntArray, found: FloatArray) -> Int
     first = 0
     while first < ordered.size - 1:
         pair = slice(first, first + 2)
-        if frequency[first + 1] > (1.0 + CLOSE) * frequency[first] or np.any(ordered[pair] < 0):
+        apart = frequency[first + 1] > (1.0 + CLOSE) * frequency[first]
+        least, most = np.sort(damping_ratio[pair])
+        if apart or most > ALIKE * least or np.any(ordered[pair] < 0):
             first += 1
             continue
         ordered[pair] = ordered[pair][np.argsort(found[ordered[pair]], kind="stable")]

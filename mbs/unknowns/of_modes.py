@@ -113,7 +113,8 @@ class ModeLook:
         """Values of the modes of the reference in another system."""
         own, places = np.unique(self.chosen, return_inverse=True)
         partner = partners(self.balance.system, self.modes.shapes[:, own], balance.system, found.shapes)
-        partner = in_order(self.modes.frequency[own], partner, found.frequency)[places]
+        known = self.modes.frequency[own], self.modes.damping_ratio[own]
+        partner = in_order(*known, partner, found.frequency)[places]
         values = np.array([found.frequency[partner], found.damping_ratio[partner]])
         return np.where(partner >= 0, values, np.nan)
 

@@ -109,7 +109,10 @@ def test_numbers_have_the_digits_that_they_deserve():
 
 def test_planes_of_one_frequency_are_paired_by_order():
     frequency = np.array([100.0, 101.0, 200.0, 203.0])
-    assert in_order(frequency, np.array([1, 0, 3, -1]), np.array([90.0, 95.0, 190.0, 199.0])).tolist() == [0, 1, 3, -1]
+    partner, found = np.array([1, 0, 3, -1]), np.array([90.0, 95.0, 190.0, 199.0])
+    alike, unlike = np.full(4, 0.01), np.array([0.01, 0.03, 0.01, 0.01])
+    assert in_order(frequency, alike, partner, found).tolist() == [0, 1, 3, -1]
+    assert in_order(frequency, unlike, partner, found).tolist() == [1, 0, 3, -1]  # two modes that meet, by shape
 
 
 @pytest.fixture(scope="module")

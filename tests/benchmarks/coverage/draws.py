@@ -115,7 +115,7 @@ def truth(scene: Scene, reference: Equilibrium, known: Modes, chosen: Any) -> Tr
     """Solve a true machine, and put its modes in the order of a reference."""
     balance, found = solved(scene)
     partner = _partners(reference, known.shapes[:, chosen], balance, found)
-    partner = _planes(known.frequency[chosen], partner, found.frequency)
+    partner = _planes(known.frequency[chosen], known.damping_ratio[chosen], partner, found.frequency)
     there = partner >= 0
     values = np.where(there, [found.frequency[partner], found.damping_ratio[partner]], np.nan)
     peaks = np.full(partner.size, np.nan)
@@ -143,11 +143,12 @@ def _partners(first: Equilibrium, shapes: Any, second: Equilibrium, found: Modes
     return partner
 
 
-def _planes(frequency: FloatArray, partner: Any, found: FloatArray) -> Any:
-    """Two modes within 3 % are two planes: the lower one is the lower one."""
+def _planes(frequency: FloatArray, ratio: FloatArray, partner: Any, found: FloatArray) -> Any:
+    """Two modes within 3 %, damped alike to a factor of two, are two planes: the lower one is the lower one."""
     result, k = partner.copy(), 0
     while k + 1 < result.size:
-        if frequency[k + 1] / frequency[k] < 1.03 and result[k] >= 0 and result[k + 1] >= 0:
+        alike = 0.5 <= ratio[k + 1] / ratio[k] <= 2.0 and frequency[k + 1] / frequency[k] < 1.03
+        if alike and result[k] >= 0 and result[k + 1] >= 0:
             result[k], result[k + 1] = sorted(result[k : k + 2], key=lambda mode: found[mode])
             k += 1
         k += 1
