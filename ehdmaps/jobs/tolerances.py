@@ -18,6 +18,9 @@ from ehdmaps.units import Display, quantity
 _SIGN = re.compile(r"\+-|\+/-|±")
 _PART = re.compile(r"([0-9]+\.?[0-9]*|\.[0-9]+) ?%")
 
+OF = " of "
+"""Between a key and the name of a bearing."""
+
 MOST = 1.0
 """Largest tolerance that is a part."""
 
@@ -168,6 +171,16 @@ def read_tolerances(section: Table) -> dict[str, Tolerance]:
         except InputError as error:
             section.note(name, error.problems[0])
     return found
+
+
+def of_bearing(group: str, bearing: str) -> str:
+    """Key of a statement on one bearing."""
+    return f"{group}{OF}{bearing}"
+
+
+def of_all(tolerances: Mapping[str, Tolerance], group: str) -> dict[str, Tolerance]:
+    """Statements without those on single bearings of a group, which a nearer statement on all has outdone."""
+    return {key: value for key, value in tolerances.items() if not key.startswith(group + OF)}
 
 
 def _allowed(row: Tolerated) -> str:

@@ -7,28 +7,21 @@ A scene keeps them in one mapping, `Scene.tolerances`: "clearance of drive" of o
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ehdmaps.errors import InputError, closest, short
-from ehdmaps.jobs.tolerances import TOLERATED, Tolerance, read_tolerance, split
+from ehdmaps.jobs.tolerances import OF, TOLERATED, Tolerance, of_all, of_bearing, read_tolerance, split
 from ehdmaps.units import quantity
 
 if TYPE_CHECKING:
     from mbs.scene.scene import Scene
 
-_OF = " of "
-
 _VALUES = {"clearance": "m", "temperature": "K"}
 """What a command may state with a value, in its unit; the others are stated by their tolerance alone."""
 
 EXACT = Tolerance(0.0, True, "+-0 %")
-
-
-def of_bearing(group: str, bearing: str) -> str:
-    """Key of a statement on one bearing."""
-    return f"{group}{_OF}{bearing}"
 
 
 def tolerance_of(scene: Scene, group: str, bearing: str = "") -> Tolerance | None:
@@ -45,11 +38,6 @@ def tolerance_of(scene: Scene, group: str, bearing: str = "") -> Tolerance | Non
     """
     found = scene.tolerances.get(of_bearing(group, bearing)) if bearing else None
     return found or scene.tolerances.get(group)
-
-
-def of_all(tolerances: Mapping[str, Tolerance], group: str) -> dict[str, Tolerance]:
-    """Statements without those on single bearings of a group, which a nearer statement on all has outdone."""
-    return {key: value for key, value in tolerances.items() if not key.startswith(group + _OF)}
 
 
 @dataclass(frozen=True)
@@ -111,7 +99,7 @@ def read_statements(text: str) -> tuple[Statement, ...]:
 def _statement(text: str) -> Statement:
     """Read one statement."""
     key, equals, stated = (part.strip() for part in text.partition("="))
-    group, _, bearing = (part.strip() for part in key.partition(_OF))
+    group, _, bearing = (part.strip() for part in key.partition(OF))
     names = tuple(TOLERATED)
     if group not in names:
         raise InputError(f"got {short(key)}{closest(group, names)}; allowed: {', '.join(names)}")
