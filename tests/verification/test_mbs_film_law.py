@@ -28,7 +28,6 @@ from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.output.model_text import band_lines, film_law_line, film_lines
 from mbs.scene.assembly import assemble
-from mbs.scene.changes import with_slices
 from mbs.scene.reader import read_scene
 from tests.cases.exact_films import ExactMachine
 
@@ -57,7 +56,7 @@ def films():
 
 def machine(emap, films, scene, clearance):
     """A machine with memory, its equilibrium, and the same with exact films."""
-    model = assemble(with_slices(read_scene(scene), 7), "map", emap, clearance, "memory")
+    model = assemble(read_scene(scene), "map", emap, clearance, "memory")
     balance = equilibrium(steady_system(model.system), Operation(SPEED))
     return model, balance, ExactMachine(balance, OIL, films)
 
