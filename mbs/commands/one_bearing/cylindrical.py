@@ -11,7 +11,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from ehdmaps.choices import STRUCTURE
 from ehdmaps.errors import EhdmapsError, InputError
@@ -23,7 +23,7 @@ from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.rollers.ribbed_geometry import NO_RIBS
 from ehdmaps.physics.solids import STEEL, Material
-from ehdmaps.physics.surface import SMOOTH, Surface
+from ehdmaps.physics.surface import SMOOTH, CrownedProfile, Surface, TabulatedProfile
 from ehdmaps.units import TEMPERATURE, closest, short
 from mbs.analyses.bearing_point import bearing_points
 from mbs.bearings import laws
@@ -224,7 +224,9 @@ class BearingRequest:
     def scene(self) -> Scene:
         """The bearing as the only one of a scene, to ask what is not known of it."""
         bearing = self.bearing
-        spec = BearingSpec(NAME, "", "", bearing.geometry, bearing.profile, bearing.slices)
+        # profiles of requests are those of scenes
+        profile = cast("str | CrownedProfile | TabulatedProfile", bearing.profile)
+        spec = BearingSpec(NAME, "", "", bearing.geometry, profile, bearing.slices)
         return scene_of(spec, self.oil, self.description)
 
     def again(self, scene: Scene) -> BearingRequest:
