@@ -219,7 +219,7 @@ class RollingFilm:
         field : FilmField, optional
             Films of the contact. Outside the map the flow then follows them, see above; it goes on straight without.
         """
-        key = contact, *(values.tobytes() for values in (first, speeds, temperatures))
+        key: tuple[str | bytes, ...] = (contact, first.tobytes(), speeds.tobytes(), temperatures.tobytes())
         kept = self._flows.get(key)
         if kept is None or kept[0] is not field:
             if len(self._flows) >= _KEPT:
