@@ -24,9 +24,9 @@ pull, nu308 = Load("pull", "shaft", np.array([0.0, 0.0, -300.0, 0.0, 0.0, 0.0]))
 bearings = [BearingSpec(side, f"shaft:{side}", "ground", nu308) for side in ("left", "right")]
 scene = Scene(name="disc", speed=52.36, temperature=313.15, bodies=[shaft], loads=[pull], elements=bearings)
 model = assemble(scene, clearance=-2e-6)  # preloaded a little
-force, found = model.bearings[0].force, modes(model).dataset["frequency"].values
-assert isinstance(force, BearingForce)
-one = bearing_point(force, model.films["left"], (0.0, -150.0), scene.speed, scene.temperature)
+left, found = model.bearings[0], modes(model, cage_angles=1).dataset["frequency"].values
+assert isinstance(left.force, BearingForce) and left.source is not None
+one = bearing_point(left.force, left.source, (0.0, -150.0), scene.speed, scene.temperature)
 expected = math.sqrt(2.0 * one.stiffness[1, 1] / model.system.mass[0, 0]) / (2.0 * math.pi)
 bounce = min(found, key=lambda frequency: abs(frequency - expected))
 print(f"{found.round(2)} Hz; bounce {bounce:.4f} Hz, of one bearing and half the mass {expected:.4f} Hz")
