@@ -27,6 +27,13 @@ HIGHEST = 5000.0
 """Highest frequency of a Campbell diagram where none is given [Hz]."""
 
 
+LOWEST_HIGHEST, HIGHEST_HIGHEST = 1.0, 1e6
+"""Limits of the highest frequency [Hz]."""
+
+SHORTEST, LONGEST = 1e-6, 1e3
+"""Limits of the window of a Campbell diagram [s]."""
+
+
 @dataclass(frozen=True)
 class Settings:
     """Settings of the integration.

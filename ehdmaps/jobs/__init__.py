@@ -9,7 +9,6 @@ problem      bearing or contact, material, lubricant, axes of the grid
 supply       oil supply and roughness of a job, a scene or a command line, as text
 solids       the structural law
 profiles     profiles of rollers, by name, as an arc or a table
-tolerances   how well a number of a scene is known, as text
 solvers      names and settings of the solvers
 defaults     what a job takes where it says nothing; the job of a designation
 reader       job file, shipped job or map file -> `Job`

@@ -34,7 +34,7 @@ class Key:
     Attributes
     ----------
     key : str
-        Its name in [solver].
+        Name in [solver].
     meaning : str
         What it says.
     limits : (float, float)

@@ -342,7 +342,7 @@ class EHDMap:
     @cached_property
     def physics(self) -> str:
         """Word for what its films know of heat, see `ehdmaps.physics.heat.PHYSICS`."""
-        settings = read_json(self.dataset.attrs.get("solver_settings", "{}"), "solver_settings")
+        settings = read_json(self.dataset.attrs.get("solver_settings") or "{}", "solver_settings")
         return str(settings.get("physics", ISOTHERMAL))
 
     @property

@@ -88,7 +88,7 @@ class LinearDifferences:
 
     @classmethod
     def worst(cls, several: Sequence[LinearDifferences]) -> LinearDifferences:
-        """Of each difference of several systems the largest one; NaN where one has nothing to compare.
+        """Largest of each difference of several systems; NaN where one has nothing to compare.
 
         Parameters
         ----------
@@ -204,7 +204,7 @@ def linear_look(model: Model, angle: float = 0.0, cage_angles: int = CAGE_ANGLES
 
 
 def _largest(values: FloatArray) -> FloatArray:
-    """Of each column of values the one of largest size, with its sign; NaN where one is."""
+    """Value of largest size in each column, with its sign; NaN where one is."""
     if not values.size:
         return np.zeros(values.shape[1:])
     at = np.argmax(np.where(np.isnan(values), np.inf, np.abs(values)), axis=0)

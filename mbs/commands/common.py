@@ -13,9 +13,16 @@ from ehdmaps.outputs import write_figure
 from ehdmaps.units import Display, quantity
 from mbs.output.files import write_dataset
 from mbs.scene.fields import HERTZ, MILLISECOND
-from mbs.scene.reader import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.scene import Scene
-from mbs.settings import CAGE_ANGLES, MOST_ANGLES, NUMERICS
+from mbs.settings import (
+    CAGE_ANGLES,
+    HIGHEST_HIGHEST,
+    LONGEST,
+    LOWEST_HIGHEST,
+    MOST_ANGLES,
+    NUMERICS,
+    SHORTEST,
+)
 
 ALL = USUAL_BANDS = "all"
 """What `--bands` is called that finds bands of what is not known, and what is found where nothing is asked."""

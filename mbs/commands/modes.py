@@ -21,11 +21,11 @@ from mbs.commands.cases import load_model
 from mbs.commands.common import Looked, read_cage_angles, read_option, with_bands, write, write_plot
 from mbs.linearised.modes import Modes
 from mbs.linearised.shapes import skeleton
-from mbs.output.band_text import about_lines, mode_lines
+from mbs.output.band_text import about_lines, mode_lines, share_words
 from mbs.output.files import RESULT
 from mbs.output.model_text import LITTLE_DAMPING, OTHER_DAMPING, band_lines, clean, film_law_line, film_lines, heading
 from mbs.output.reduction_text import reduction_lines
-from mbs.output.result_text import above_lines, free_lines, kinds, share_words
+from mbs.output.result_text import above_lines, free_lines, kinds
 from mbs.output.shapes.shapes_file import MOST_SHAPES as MOST_WRITTEN
 from mbs.output.shapes.shapes_file import SHAPES, series_files, write_shapes
 from mbs.output.shapes.shapes_page import MOST_SHAPES as MOST_MOVING

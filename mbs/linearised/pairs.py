@@ -29,11 +29,11 @@ def partners(system: System, shapes: ComplexArray, other: System, others: Comple
     system : System
         The reference.
     shapes : array, shape (n, modes)
-        Its modes.
+        Shapes of its modes.
     other : System
         The other system; it may have other coordinates.
     others : array, shape (m, modes of it)
-        Its modes.
+        Shapes of its modes.
     """
     places = {name: k for k, name in enumerate(other.coordinates)}
     common = [k for k, name in enumerate(system.coordinates) if name in places]

@@ -13,7 +13,7 @@ import numpy as np
 
 from ehdmaps.arrays import IntArray
 from ehdmaps.units import DAMPER, FILM, PRESSURE, SPRING
-from mbs.output.result_text import share_words
+from mbs.output.model_text import ROUND_OFF
 from mbs.scene.scene import Scene
 from mbs.unknowns.looks import Band, Term
 from mbs.unknowns.words import missing_words
@@ -27,6 +27,9 @@ HEAD = "90 % of what is not known"
 
 DECIDED = "decided by; and the band if the first, of all bearings, were exact"
 """Heading of what decides bands, and of what stating it would give."""
+
+_LEAST_SHARE = 0.05
+"""Share of the strain energy below which a part of a mode is not named."""
 
 LOPSIDED = 0.1
 """Part of the larger side of a band below which the smaller one makes no more digits."""
@@ -49,6 +52,8 @@ def deserved(value: float, side: float) -> str:
     """
     if not math.isfinite(value):
         return "-"
+    if abs(value) <= ROUND_OFF:
+        return "0"
     if not (math.isfinite(side) and side > 0.0):
         return f"{value:.6g}"
     places = 1 - math.floor(math.log10(side))
@@ -77,7 +82,7 @@ def bounds_text(band: Band, place: int) -> str:
 
 
 def term_words(terms: Sequence[Term]) -> str:
-    """What decides a band: the names of terms, those of one kind of several bearings together.
+    """Terms that decide a band: their names of terms, those of one kind of several bearings together.
 
     Examples
     --------
@@ -93,7 +98,7 @@ def term_words(terms: Sequence[Term]) -> str:
 
 
 def exact_text(band: Band, place: int, relative: str = "") -> str:
-    """What decides a value, and its bounds if the largest of that were stated exactly.
+    """Words on what decides a value, and its bounds if the largest of that were stated exactly.
 
     Parameters
     ----------
@@ -245,3 +250,22 @@ def bearing_quantities(names: Sequence[str], bands: Mapping[str, Band]) -> Itera
                 yield Quantity(name, words, shown.unit, bands[variable].of((index, worst)).scaled(shown.factor))
         if "highest_raceway_load" in bands:
             yield Quantity(name, "highest load", "N", bands["highest_raceway_load"].of(index))
+
+
+def share_words(found: Modes, mode: int) -> str:
+    """Return the parts that have most of the strain energy of a mode.
+
+    Parameters
+    ----------
+    found : Modes
+        The modes.
+    mode : int
+        Which one, from 0 on.
+    """
+    order = np.argsort(-found.shares[:, mode], kind="stable")
+    shares = [
+        f"{found.parts[i]} {100.0 * found.shares[i, mode]:.3g} %"
+        for i in order
+        if found.shares[i, mode] >= _LEAST_SHARE
+    ]
+    return ", ".join(shares) or "none"

@@ -18,7 +18,6 @@ from mbs.scene.assembly import Model
 from mbs.scene.contact_laws import supply_words
 from mbs.scene.fields import MICROMETRE
 from mbs.scene.scene import Scene
-from mbs.unknowns.words import open_lines
 
 if TYPE_CHECKING:
     from mbs.linearised.validity import FilmError
@@ -92,6 +91,8 @@ def common_supply(models: Iterable[Model]) -> str:
 
 def heading(model: Model, speed: float | None = None) -> list[str]:
     """Tell what was analysed, and which of its numbers are assumptions."""
+    from mbs.unknowns.words import open_lines  # analyses take words from here, and no heading
+
     at = "" if speed is None else f"{RPM.text(speed)}, "
     state = f"{at}{temperature_text(model)}, clearance {clearance_text(model) or 'none'}, {weight_text(model)}"
     # Most of what was chosen is in these words and in those of the law.

@@ -91,9 +91,6 @@ def _percent(part: float) -> str:
     return f"{100.0 * part:.2g} %"
 
 
-_LEAST_SHARE = 0.05
-
-
 def kinds(found: Modes) -> tuple[IntArray, IntArray, IntArray]:
     """Return which modes are free, which creep back without oscillating, and which oscillate.
 
@@ -105,25 +102,6 @@ def kinds(found: Modes) -> tuple[IntArray, IntArray, IntArray]:
     free = found.free
     creeping = (found.eigenvalues.imag <= 0.0) & ~free
     return np.flatnonzero(free), np.flatnonzero(creeping), np.flatnonzero(~free & ~creeping)
-
-
-def share_words(found: Modes, mode: int) -> str:
-    """Return the parts that have most of the strain energy of a mode.
-
-    Parameters
-    ----------
-    found : Modes
-        The modes.
-    mode : int
-        Which one, from 0 on.
-    """
-    order = np.argsort(-found.shares[:, mode], kind="stable")
-    shares = [
-        f"{found.parts[i]} {100.0 * found.shares[i, mode]:.3g} %"
-        for i in order
-        if found.shares[i, mode] >= _LEAST_SHARE
-    ]
-    return ", ".join(shares) or "none"
 
 
 def signal_lines(records: Sequence[TimeRecord]) -> list[str]:

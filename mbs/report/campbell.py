@@ -20,11 +20,11 @@ from ehdmaps.report.page import Markup, joined, table, tag
 from ehdmaps.units import RPM
 from mbs.analyses.modes import ModesResult
 from mbs.linearised.sweep_result import Sweep
-from mbs.output.band_text import about_lines, bounds_text, lost_lines, term_words, value_text
+from mbs.output.band_text import about_lines, bounds_text, lost_lines, share_words, term_words, value_text
 from mbs.output.files import RESULT
 from mbs.output.model_text import band_lines, clean, film_law_line, film_lines, free_words
 from mbs.output.reduction_text import reduction_lines
-from mbs.output.result_text import kinds, share_words
+from mbs.output.result_text import kinds
 from mbs.scene.fields import HERTZ
 
 MOST = 60

@@ -204,7 +204,7 @@ GivenMaps: TypeAlias = "EHDMap | str | Path | Sequence[EHDMap | str | Path] | Ma
 
 @dataclass(frozen=True, eq=False)
 class Recipe:
-    """How a model was made of its scene, so that a scene that is a little different can be made alike.
+    """Making of a model of its scene, so that a scene that is a little different can be made alike.
 
     Attributes
     ----------

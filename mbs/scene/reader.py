@@ -17,7 +17,6 @@ from ehdmaps.jobs import table
 from ehdmaps.jobs.problem import AxisRule, read_axis, read_lubricant
 from ehdmaps.jobs.supply import read_supply, read_surface
 from ehdmaps.jobs.table import Table
-from ehdmaps.jobs.tolerances import Tolerance, read_tolerances
 from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.units import DAMPER, RPM, SPRING, TEMPERATURE, Display, closest, short
 from mbs.gears.pair import GearPair
@@ -33,20 +32,26 @@ from mbs.scene.scene import Scene
 from mbs.scene.shafts.standing import mounts, read_gravity
 from mbs.scene.specs import ORIGIN, BodySpec, FlexibleSpec, RigidSpec, ShaftSpec
 from mbs.scene.turning import read_excitation, read_unbalance
-from mbs.settings import HIGHEST, MOST_SPEEDS, CampbellSettings, RunUp, Settings, SweepRange
+from mbs.settings import (
+    HIGHEST,
+    HIGHEST_HIGHEST,
+    LONGEST,
+    LOWEST_HIGHEST,
+    MOST_SPEEDS,
+    SHORTEST,
+    CampbellSettings,
+    RunUp,
+    Settings,
+    SweepRange,
+)
 from mbs.unknowns.statement import taken_out
+from mbs.unknowns.tolerances import Tolerance, read_tolerances
 
 MOST_POINTS = 1000
 """Points of a torque over speed."""
 
 _LARGEST = 1e9
 """Largest torque [N m]."""
-
-LOWEST_HIGHEST, HIGHEST_HIGHEST = 1.0, 1e6
-"""Limits of the highest frequency [Hz]."""
-
-SHORTEST, LONGEST = 1e-6, 1e3
-"""Limits of the window [s]."""
 
 _MOST_ORDERS = 50
 _LARGEST_ORDER = 1e4

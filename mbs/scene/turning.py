@@ -12,7 +12,6 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.table import Table
 from ehdmaps.units import LENGTH, RPM, Display
 from mbs.model.elements import GROUND
 from mbs.model.turning import TurningLoad, unbalance
@@ -21,6 +20,7 @@ from mbs.scene.fields import DEGREE
 from mbs.scene.specs import BodySpec, RigidSpec, ShaftSpec
 
 if TYPE_CHECKING:
+    from ehdmaps.jobs.table import Table
     from mbs.model.system import Places
 
 HIGHEST_ORDER = 1e5

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from mbs.unknowns.looks import Band
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 SIDES = ("low", "high")
 """Ends of the names of bounds."""
@@ -24,7 +26,7 @@ def with_bounds(dataset: xr.Dataset, name: str, band: Band, places: Any = ...) -
     name : str
         The variable.
     band : Band
-        Its band, in its unit.
+        Band of the variable, in its unit.
     places : index
         Index of the values of the band among those of the variable.
     """

@@ -46,7 +46,7 @@ class Term:
     name, group : str
         What it is, and what a statement of it is called.
     rise, fall : array of any shape
-        By how much each value may be larger, and smaller, both >= 0, in its unit.
+        Change by which each value may be larger, and smaller, both >= 0, in its unit.
     """
 
     name: str
@@ -73,7 +73,7 @@ class Band:
     terms : tuple of Term
         Changes by each unknown.
     lost : array of int, same shape
-        In how many looks a value was not found again; these count as no change.
+        Number of looks in which a value was not found again; these count as no change.
     looks : int
         Number of looks.
     refused : tuple of str

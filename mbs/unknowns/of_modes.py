@@ -92,9 +92,9 @@ class ModeLook:
     model : Model
         The model of the reference.
     balance : Equilibrium
-        Its equilibrium; a look has the same speed, and means over as many cage angles.
+        Equilibrium of the machine; a look has the same speed, and means over as many cage angles.
     modes : Modes
-        Its modes.
+        Modes about it.
     chosen : array of int, shape (modes,)
         Which of them are looked for; the same one may be there several times.
     """
@@ -129,7 +129,7 @@ def bands_of(model: Model, balance: Equilibrium, found: Modes, highest: float) -
     balance : Equilibrium
         Equilibrium at which it was linearised.
     found : Modes
-        Its modes there.
+        Modes there.
     highest : float
         Frequency up to which modes have bands [Hz].
     """

@@ -71,7 +71,7 @@ def peak_bands(
     balance : Equilibrium
         Equilibrium at which it was linearised.
     found : Modes
-        Its modes there.
+        Modes there.
     frequencies : array, shape (frequencies,)
         [Hz].
     sizes : array, shape (frequencies, sensors, inputs)

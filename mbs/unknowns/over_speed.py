@@ -91,7 +91,7 @@ def critical_bounds(bands: SpeedBands, found: Sweep, critical: Sequence[Critical
     found : Sweep
         The sweep.
     critical : sequence of CriticalSpeed
-        Its critical speeds.
+        Critical speeds of the machine.
 
     Returns
     -------

@@ -12,10 +12,10 @@ _FIRST, _SECOND = ("clearance",), ("temperature", "viscosity", "pressure_viscosi
 """Groups of the first two lines of a head; the third has the others."""
 
 NOT_IN_IT = "oil supply, damping of seats and joints, loads, and masses and bodies of the scene"
-"""What no band holds, of any machine."""
+"""Unknowns that no band holds, of any machine."""
 
 BALL_CAGE = "the cage hypothesis of balls"
-"""What bands of machines with balls do not hold besides."""
+"""Unknowns that bands of machines with balls do not hold besides."""
 
 
 def open_lines(scene: Scene, more: str = "; each is listed by mbs check") -> list[str]:

@@ -37,7 +37,7 @@ def scene_of(spec: BearingSpec | LocatingSpec, oil: Lubricant, told: Description
     spec : BearingSpec or LocatingSpec
         The bearing.
     oil : Lubricant
-        Its oil.
+        Oil of the bearing.
     told : Description
         Temperature of its raceways, and how well its numbers are known.
     """

@@ -10,10 +10,13 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ehdmaps.errors import InputError, short
-from ehdmaps.jobs.table import Table
 from ehdmaps.units import Display, quantity
+
+if TYPE_CHECKING:
+    from ehdmaps.jobs.table import Table
 
 _SIGN = re.compile(r"\+-|\+/-|±")
 _PART = re.compile(r"([0-9]+\.?[0-9]*|\.[0-9]+) ?%")
