@@ -30,8 +30,7 @@ from mbs.output.time_files import is_time_data, read_time_data, signal_outputs, 
 from mbs.scene.assembly import Model
 from mbs.scene.choices import OPTIONS
 from mbs.scene.fields import HERTZ, MILLISECOND
-from mbs.scene.reader import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
-from mbs.settings import CampbellSettings
+from mbs.settings import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST, CampbellSettings
 from mbs.spectral.campbell import RunUpSpectra
 from mbs.spectral.levels import Reference, difference_text
 from mbs.timedata.records import TimeChannel, TimeData

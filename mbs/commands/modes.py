@@ -33,8 +33,8 @@ from mbs.output.shapes.shapes_page import PAGE, is_page, shapes_page
 from mbs.planning.question import at_one_speed
 from mbs.scene.assembly import Model
 from mbs.scene.fields import HERTZ, MILLISECOND
-from mbs.scene.reader import HIGHEST_HIGHEST, LOWEST_HIGHEST
 from mbs.scene.scene import Scene
+from mbs.settings import HIGHEST_HIGHEST, LOWEST_HIGHEST
 
 HIGHEST = 10e3
 """Highest frequency shown of a scene that asks for no responses [Hz]."""

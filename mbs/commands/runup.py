@@ -35,9 +35,8 @@ from mbs.output.time_files import is_time_data, read_time_data, write_time_data
 from mbs.planning.question import in_time
 from mbs.planning.tolerance import Tolerated, asked_tolerance, several_problems, tolerated_run
 from mbs.scene.fields import HERTZ, MILLISECOND
-from mbs.scene.reader import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.scene import Scene
-from mbs.settings import HIGHEST
+from mbs.settings import HIGHEST, HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.spectral.spectra import AmplitudeSpectrum
 from mbs.timedata.netcdf_file import signal_variables
 from mbs.timedata.records import TimeChannel, TimeData, TimeRecord
