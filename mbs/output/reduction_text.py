@@ -32,7 +32,8 @@ def reduction_lines(system: System, frequency: FloatArray, ratio: FloatArray, pa
     if part is not None and np.isfinite(frequency).any():
         values = np.array([frequency, ratio])
         known = (values > ROUND_OFF) & np.isfinite(frequency)  # a motion without a frequency has a damping ratio of one
-        words = [_largest(size, frequency) for size in np.where(known, np.abs(np.array(part)) / values, 0.0)]
+        sizes = np.divide(np.abs(np.array(part)), values, out=np.zeros_like(values), where=known)
+        words = [_largest(size, frequency) for size in sizes]
         lines.append(
             f"  reduction: without modes of bodies above {HERTZ.text(cut)}, which change frequencies by up to "
             f"{words[0]}, damping ratios by up to {words[1]}"

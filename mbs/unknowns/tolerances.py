@@ -120,8 +120,8 @@ def read_tolerance(text: object, name: str) -> Tolerance:
 
     Examples
     --------
-    >>> read_tolerance("+- 5 um", "clearance").half_width(20e-6), read_tolerance("10 %", "clearance").half_width(20e-6)
-    (5e-06, 2e-06)
+    >>> read_tolerance("+- 5 um", "clearance").half_width(20e-6), read_tolerance("25 %", "clearance").half_width(20e-6)
+    (5e-06, 5e-06)
     """
     row = TOLERATED[name]
     wrong = InputError(f"got {short(text)}; allowed: {_allowed(row)}")

@@ -169,7 +169,7 @@ def test_beyond_the_cells(centrifugal, law, small_map):
 def test_profile(centrifugal, law, small_map):
     """Rollers of another profile, and numbers of slices that are not allowed."""
     bearing = Bearing(open_map(small_map).bearing, slices=7, profile=tuple(np.linspace(0.0, 6e-6, 7)))
-    assert centrifugal.make(0.0, 7, bearing.profile_depths) == 0
+    assert centrifugal.make(bearing.geometry.diametral_clearance, 7, bearing.profile_depths) == 0
     force, rng = BearingForce(bearing, law), np.random.default_rng(0)
     for level in (False, True):
         assert_bearing(centrifugal, force, rng, 1e-5, 1.0, law.temperature_range[0], 0.0, level=level)

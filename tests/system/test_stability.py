@@ -42,12 +42,13 @@ def test_contacts_at_the_extremes(tmp_path, capsys) -> None:
     assert counted["contact: what is no point"]["refused"] == counted["contact: what is no point"]["tried"] > 200
 
 
-def test_a_failure_ends_with_status_1(monkeypatch, capsys) -> None:
+def test_a_failure_ends_with_status_1(monkeypatch, tmp_path) -> None:
     reader = of_ehdmaps.READERS["status of a run"]()
     wrong = type(reader)(reader.name, reader.folders, lambda folder: "another number")
     monkeypatch.setattr("mbs.laboratory.commands.stability.MAP_READERS", {"status of a run": lambda: wrong})
-    assert main(["stability", "--only", "status of a run", "--mutations", "3", "--json"]) == 1
-    (check,) = json.loads(capsys.readouterr().out)["checks"]
+    path = tmp_path / "found.json"
+    assert main(["stability", "--only", "status of a run", "--mutations", "3", "-o", str(path)]) == 1
+    (check,) = json.loads(path.read_text())["checks"]
     assert check["failed"] == 4 and check["failures"][0]["what"] == "another number"  # the good file, too
 
 
