@@ -158,7 +158,7 @@ def mode_lines(found: Modes, shown: IntArray, bands: ModeBands) -> list[str]:
     bands : ModeBands
         Their bands.
     """
-    lines = [f"  mode  frequency/Hz   {HEAD:26s} numerics   damping ratio   {'90 %':28s} numerics   strain energy"]
+    lines = [f"  mode  frequency/Hz   {HEAD:26s} numerics    damping ratio   {'90 %':28s} numerics    strain energy"]
     decided = []
     for k in shown:
         place, numerics = bands.place(int(k)), [math.nan, math.nan] if found.bands is None else found.bands[:2]
@@ -170,8 +170,8 @@ def mode_lines(found: Modes, shown: IntArray, bands: ModeBands) -> list[str]:
         for (band, value), size, wide in zip(own, numerics, (26, 28), strict=True):
             text = f"{value:.4g}" if place is None else value_text(band, place)
             bounds = "-" if place is None else bounds_text(band, place)
-            error = "-" if found.bands is None else f"{np.asarray(size)[k]:.1e}"
-            cells += [text, f"{bounds:{wide}s}", f"{error:>8s}"]
+            error = "-" if found.bands is None else deserved(float(np.asarray(size)[k]), float(np.asarray(size)[k]))
+            cells += [text, f"{bounds:{wide}s}", f"{error:<9s}"]
         lines.append(
             f"  {k + 1:4d} {cells[0]:>13s}   {cells[1]} {cells[2]} {cells[3]:>15s}   {cells[4]} {cells[5]}   "
             f"{share_words(found, k)}"

@@ -3,9 +3,14 @@
 The centre is the result as it is printed, with stiffness and damping that are means over some cage angles. Each unknown
 is taken to both ends of its range, everything else as stated, and the whole analysis is done again: that is a look. A
 look that one side lacks, since it would cost a new law for little, is the other one reflected. Each side of the band
-adds its own changes d as squares, with what numerics leave open as one more term:
+adds its own changes d as squares, with what numerics leave open as one more term; what is one thing or another, such as
+a profile, and no spread, is added as it is, so that a band encloses those of both:
 
-    high = value + sqrt(sum max(d, 0)^2 + numerics^2),    low likewise.
+    high = value + sum members max(d, 0) + sqrt(sum max(d, 0)^2 + numerics^2),    low likewise.
+
+Frequencies, damping ratios, K, C and all else that has one sign are taken by their logarithms: what makes a value three
+times as large and what doubles it make it six times as large together. Levels and other values of either sign are
+added.
 
 For many independent unknowns, each uniform within its half-width a, 1.645 standard deviations of the sum are
 0.95 sqrt(sum a^2): a band of about 90 %. Sides are kept apart, for clearances and cages move damping far more one way
@@ -47,12 +52,15 @@ class Term:
         What it is, and what a statement of it is called.
     rise, fall : array of any shape
         Change by which each value may be larger, and smaller, both >= 0, in its unit.
+    member : bool
+        Whether it is one thing or another, and no spread.
     """
 
     name: str
     group: str
     rise: FloatArray
     fall: FloatArray
+    member: bool = False
 
     @property
     def size(self) -> FloatArray:
@@ -93,12 +101,17 @@ class Band:
     @cached_property
     def rise(self) -> FloatArray:
         """Distance from the value to the upper bound."""
-        return self._together([term.rise for term in self.terms])
+        size = np.abs(self.value)
+        total = self._together(lambda term: term.rise, np.log1p)
+        return np.asarray(np.where(self._by_factors, size * np.expm1(np.where(self._by_factors, total, 0.0)), total))
 
     @cached_property
     def fall(self) -> FloatArray:
         """Distance from the value to the lower bound."""
-        return self.value - self.low
+        size = np.abs(self.value)
+        total = self._together(lambda term: term.fall, lambda part: -np.log1p(-np.minimum(part, 1.0)))
+        least = np.where(self._by_factors, -size * np.expm1(-total), total)
+        return np.asarray(np.where(self._either_sign, least, np.minimum(least, self.value)))
 
     @cached_property
     def high(self) -> FloatArray:
@@ -108,9 +121,18 @@ class Band:
     @cached_property
     def low(self) -> FloatArray:
         """Lower bounds."""
-        least = self.value - self._together([term.fall for term in self.terms])
+        return self.value - self.fall
+
+    @property
+    def _either_sign(self) -> BoolArray:
+        """Values that may have either sign."""
         signed = np.zeros(self.value.shape, dtype=np.bool_) if self.signed is None else self.signed
-        return np.where(signed | (self.value < 0.0), least, np.maximum(least, 0.0))
+        return np.asarray(signed | (self.value < 0.0))
+
+    @property
+    def _by_factors(self) -> BoolArray:
+        """Values whose changes multiply."""
+        return np.asarray(~self._either_sign & (self.value > 0.0))
 
     @property
     def smaller(self) -> FloatArray:
@@ -153,12 +175,21 @@ class Band:
         some = [term for term in self.terms if parts[term.name] > 0.0]
         return sorted(some, key=lambda term: -parts[term.name])[:count]
 
-    def _together(self, sides: Sequence[FloatArray]) -> FloatArray:
-        """One side of all terms and of the numerics."""
-        total = np.nan_to_num(self.numerics) ** 2
-        for side in sides:
-            total = total + side**2
-        return np.asarray(np.sqrt(total) + 0.0 * self.value)  # no band where there is no value
+    def _together(self, side: Callable[[Term], FloatArray], log: Callable[[FloatArray], FloatArray]) -> FloatArray:
+        """One side of all terms and of the numerics; by `log` of its parts of the values where changes multiply."""
+        size = np.where(self._by_factors, self.value, 1.0)
+
+        def measure(change: FloatArray) -> FloatArray:
+            with np.errstate(divide="ignore"):  # a value that may be nothing
+                return np.asarray(np.where(self._by_factors, log(change / size), change))
+
+        squares, members = measure(np.nan_to_num(self.numerics)) ** 2, np.zeros(self.value.shape)
+        for term in self.terms:
+            if term.member:
+                members = members + measure(side(term))
+            else:
+                squares = squares + measure(side(term)) ** 2
+        return np.asarray(members + np.sqrt(squares) + 0.0 * self.value)  # no band where there is no value
 
 
 def band(look: Look, centre: FloatArray, unknowns: Sequence[Unknown], numerics: FloatArray) -> Band:
@@ -209,7 +240,7 @@ def _term(unknown: Unknown, changes: Sequence[FloatArray]) -> Term:
     """The term of some changes: the largest of each side."""
     known = np.nan_to_num(np.array(changes))
     rise, fall = np.maximum(known.max(axis=0), 0.0), np.maximum(-known.min(axis=0), 0.0)
-    return Term(unknown.name, unknown.group, rise, fall)
+    return Term(unknown.name, unknown.group, rise, fall, unknown.is_member)
 
 
 def _mean_square(parts: FloatArray) -> float:

@@ -44,6 +44,11 @@ class Unknown:
     frozen_cage: bool = False
 
     @property
+    def is_member(self) -> bool:
+        """Whether the machine is one of two, such as with one profile or the other, and no spread around a middle."""
+        return len(self.looks) == 1 and not self.reflected and not self.frozen_cage
+
+    @property
     def text(self) -> str:
         """The unknown in a line."""
         return f"{self.name} {self.held} ({self.why})"

@@ -58,12 +58,29 @@ def test_nine_tenths_of_drawn_machines_are_inside():
     assert 0.88 < inside.mean() < 0.92  # 0.004 are two standard deviations of the draws
 
 
+def test_nine_tenths_are_inside_where_changes_multiply_and_one_is_of_two_kinds():
+    """Damping of rollers: factors of uniform logarithms, and one of two profiles, drawn half and half."""
+    factors = {"clearance": 1.8, "temperature": 1.3, "viscosity": 1.2}
+    each = [unknown(name, 100.0 * (factor - 1.0), 100.0 * (1.0 / factor - 1.0)) for name, factor in factors.items()]
+    both = found(*each, unknown("profile", 60.0))
+    random = np.random.default_rng(3)
+    logs = random.uniform(-1.0, 1.0, (20_000, len(factors))) @ np.log(list(factors.values()))
+    for profile in (1.0, 1.6):  # each of the kinds alone, too
+        drawn = 100.0 * profile * np.exp(logs)
+        inside = (drawn >= both.low[0]) & (drawn <= both.high[0])
+        assert 0.9 < inside.mean() <= 1.0
+    width = np.quantile(100.0 * random.choice([1.0, 1.6], logs.size) * np.exp(logs), [0.05, 0.95])
+    assert both.high[0] - both.low[0] < 1.5 * (width[1] - width[0])
+
+
 def test_sides_are_apart_and_numerics_a_term():
-    one = found(unknown("clearance", 3.0, -0.5), unknown("temperature", 4.0, 1.0), numerics=1.0)
+    unknowns = unknown("clearance", 3.0, -0.5), unknown("temperature", 4.0, 1.0)
+    one = dataclasses.replace(found(*unknowns, numerics=1.0), signed=np.ones(2, dtype=bool))
     assert one.rise[0] == pytest.approx(np.sqrt(9.0 + 16.0 + 1.0))
     assert one.fall[0] == pytest.approx(np.sqrt(0.25 + 0.0 + 1.0))
     assert [term.name for term in one.largest(0)] == ["temperature", "clearance"]
     assert one.without("temperature").rise[0] == pytest.approx(np.sqrt(10.0))
+    assert found(unknown("clearance", 100.0), unknown("profile", 50.0)).high[0] == pytest.approx(300.0)
 
 
 def test_a_single_look_stands_for_both_sides_where_it_is_reflected():
@@ -163,7 +180,7 @@ def test_a_look_at_one_bearing_is_the_command_with_another_clearance(tmp_path, m
     monkeypatch.chdir(tmp_path)
     asked = ["bearing", "6208", "--load", "1 kN", "--speed", "0 rpm", "--law", "hertz"]
     assert main([*asked, "--bands", "all", "-o", "all.nc"]) == 0
-    assert "clearance of bearing" in capsys.readouterr().out
+    assert "held open: clearance 0 to 20 um" in capsys.readouterr().out
     assert main([*asked, "--clearance", "20 um", "-o", "away.nc"]) == 0
     with xr.open_dataset("all.nc") as one, xr.open_dataset("away.nc") as other:
         for name in ("stiffness_along", "stiffness_across"):

@@ -99,7 +99,8 @@ def point_lines(bands: dict[str, Band], scene: Scene) -> list[str]:
     """
     some = next(iter(bands.values()))
     refused = [line for line in lost_lines(some.of(None), [""]) if "not in the bands" in line]
-    return [*quantity_lines(list(_quantities(bands))), *refused, *open_lines(scene, ""), *about_lines(scene)]
+    lines = [*quantity_lines(list(_quantities(bands))), *refused, *open_lines(scene, ""), *about_lines(scene)]
+    return [line.replace(f" of {NAME}", "") for line in lines]  # there is no other
 
 
 def _quantities(bands: dict[str, Band]) -> Iterator[Quantity]:
