@@ -34,6 +34,10 @@ SHORTEST, LONGEST = 1e-6, 1e3
 """Limits of the window of a Campbell diagram [s]."""
 
 
+ROUND_OFF = 1e-12
+"""Size below which a part or a ratio is shown as zero: round-off."""
+
+
 @dataclass(frozen=True)
 class Settings:
     """Settings of the integration.

@@ -13,8 +13,8 @@ import numpy as np
 
 from ehdmaps.arrays import IntArray
 from ehdmaps.units import DAMPER, FILM, PRESSURE, SPRING
-from mbs.output.model_text import ROUND_OFF
 from mbs.scene.scene import Scene
+from mbs.settings import ROUND_OFF
 from mbs.unknowns.looks import Band, Term
 from mbs.unknowns.words import missing_words
 

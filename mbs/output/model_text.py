@@ -18,13 +18,11 @@ from mbs.scene.assembly import Model
 from mbs.scene.contact_laws import supply_words
 from mbs.scene.fields import MICROMETRE
 from mbs.scene.scene import Scene
+from mbs.settings import ROUND_OFF
 
 if TYPE_CHECKING:
     from mbs.linearised.validity import FilmError
     from mbs.model.system import System
-
-ROUND_OFF = 1e-12
-"""Size below which a part or a ratio is shown as zero: round-off."""
 
 
 def clearance_text(model: Model) -> str:

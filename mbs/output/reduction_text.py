@@ -9,8 +9,8 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from mbs.linearised.reduction import REACH, ReductionPart, cut_off, unknown_ends
 from mbs.model.system import System
-from mbs.output.model_text import ROUND_OFF
 from mbs.scene.fields import HERTZ
+from mbs.settings import ROUND_OFF
 
 
 def reduction_lines(system: System, frequency: FloatArray, ratio: FloatArray, part: ReductionPart | None) -> list[str]:

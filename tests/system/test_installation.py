@@ -148,9 +148,7 @@ def test_the_two_commands_of_the_readme_in_one_clone_and_an_upgrade(tmp_path):
     # back to a copy, as the first command makes it, of a newer state
     physics = clone / "ehdmaps" / "physics"
     replaced(physics / "isotherm.py", "return alpha * p, alpha + 0.0 * p", "return alpha * p, 1.05 * alpha + 0.0 * p")
-    replaced(
-        physics / "closed_form.py", "return float(film), float(film * slope", "return 1.05 * film, float(film * slope"
-    )
+    replaced(physics / "closed_form.py", "return film, film * slope", "return 1.05 * film, film * slope")
     install()
     found = run(python, "-c", where, folder=elsewhere)
     assert Path(found.strip()) == packages / "ehdmaps" / "__init__.py"
