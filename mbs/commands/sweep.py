@@ -29,7 +29,6 @@ from mbs.model.elements import Operation
 from mbs.model.system import System
 from mbs.output.band_text import DECIDED, HEAD, about_lines, bounds_text, exact_text
 from mbs.output.model_text import (
-    ROUND_OFF,
     band_lines,
     clean,
     film_lines,
@@ -41,7 +40,7 @@ from mbs.output.state_text import flooded_note, state_lines
 from mbs.planning.question import over_speeds
 from mbs.scene.assembly import Model
 from mbs.scene.scene import Scene
-from mbs.settings import MOST_SPEEDS, SweepRange
+from mbs.settings import MOST_SPEEDS, ROUND_OFF, SweepRange
 from mbs.unknowns.over_speed import SpeedBands
 
 if TYPE_CHECKING:
