@@ -45,7 +45,7 @@ class Unknown:
 
     @property
     def is_member(self) -> bool:
-        """True where the machine is one of two, such as with one profile or the other, and no spread around a middle."""
+        """True where the machine is one of two, such as with one profile or another, and no spread around a middle."""
         return len(self.looks) == 1 and not self.reflected and not self.frozen_cage
 
     @property

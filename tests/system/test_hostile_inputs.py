@@ -166,6 +166,15 @@ MBS = named(
 )
 
 
+@pytest.fixture(scope="module")
+def compiled(tmp_path_factory):
+    """Kernels of the solver, which its first use compiles for some tens of seconds: that is no hang."""
+    job = tmp_path_factory.mktemp("compiled") / "job.toml"
+    job.write_text(JOB.replace('name = "hertz"', 'name = "reynolds"'))
+    assert ehdmaps_cli.main(["check", str(job)]) == 0
+
+
+@pytest.mark.usefixtures("compiled")
 @pytest.mark.parametrize("name", EHDMAPS)
 def test_ehdmaps(name, here, capsys):
     hold("ehdmaps", EHDMAPS[name], here, capsys)
