@@ -11,32 +11,19 @@ from __future__ import annotations
 import argparse
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
 from importlib import resources
 from typing import Any
 
 from ehdmaps.choices import Choice, add_choices
 from ehdmaps.program import Parser, Program, count
 
-
-def whole(text: str) -> int:
-    """Read a whole number >= 0.
-
-    Parameters
-    ----------
-    text : str
-        What was given.
-
-    Raises
-    ------
-    ArgumentTypeError
-        For anything else.
-    """
-    if not (text.isascii() and text.isdigit() and len(text) <= 9):
-        raise argparse.ArgumentTypeError(f"got {text[:40]!r}; allowed: a whole number from 0 to 999999999")
-    return int(text)
-
-
-READERS: Mapping[str, Callable[[str], Any]] = {"count": count, "whole": whole, "int": int, "float": float}
+READERS: Mapping[str, Callable[[str], Any]] = {
+    "count": count,
+    "whole": partial(count, least=0, most=999_999_999),
+    "int": int,
+    "float": float,
+}
 """Readers of values, by their names in a table."""
 
 

@@ -211,21 +211,24 @@ class _Version(argparse.Action):
         parser.exit()
 
 
-def count(text: str) -> int:
+def count(text: str, least: int = 1, most: int = MOST) -> int:
     """Read a number of processes, cores or points of a command line.
 
     Parameters
     ----------
     text : str
         What was given.
+    least, most : int
+        Smallest and largest number that is allowed.
 
     Raises
     ------
     ArgumentTypeError
-        For anything but a whole number from 1 to 1024.
+        For anything but a whole number in this range.
     """
-    if not (text.isascii() and text.isdigit() and 1 <= int(text[:6]) <= MOST and len(text) <= 4):
-        raise argparse.ArgumentTypeError(f"got {text[:40]!r}; allowed: a whole number from 1 to {MOST}")
+    plain = text.isascii() and text.isdigit() and len(text) <= len(str(most))
+    if not (plain and least <= int(text) <= most):
+        raise argparse.ArgumentTypeError(f"got {text[:40]!r}; allowed: a whole number from {least} to {most}")
     return int(text)
 
 

@@ -8,15 +8,17 @@ their effects are added as squares.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.job import Job
 from ehdmaps.physics.bearing import BearingGeometry
-from ehdmaps.physics.catalogue import stated_errors
 from ehdmaps.physics.contact import OperatingPoint
+from ehdmaps.physics.designations.estimates import estimated_parts
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solution import ContactSolver, contact_solution
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
@@ -60,19 +62,16 @@ def geometry_band(job: Job, point: OperatingPoint, solver: ContactSolver) -> Ban
     bearing = job.bearing
     if bearing is None or bearing.estimated is None:
         return None
-    errors = stated_errors(bearing)
-    changes: tuple[Callable[[float], BearingGeometry], ...] = (
-        lambda sign: replace(bearing, roller_diameter=bearing.roller_diameter * (1.0 + sign * errors.roller_diameter)),
-        lambda sign: replace(bearing, roller_length=bearing.roller_length * (1.0 + sign * errors.roller_length)),
-        lambda sign: replace(bearing, rollers=bearing.rollers + round(sign) * errors.rollers),
-    )
+    parts = tuple(estimated_parts(bearing))
+    if not parts:
+        raise InputError(f"bearing {bearing.name!r}: states no errors; allowed: a bearing that `estimate` made")
     oil = job.lubricant
     base = _answer(job, bearing, oil, point, solver)
 
-    def changed(change: Callable[[float], BearingGeometry]) -> Callable[[float], Answer]:
-        return lambda sign: _answer(job, change(sign), oil, point, solver)
+    def changed(end: dict[str, Any]) -> Answer:
+        return _answer(job, replace(bearing, **end), oil, point, solver)
 
-    return _added([_largest(base, changed(change)) for change in changes])
+    return _added([_largest(base, [partial(changed, end) for end in part.ends]) for part in parts])
 
 
 def pressure_viscosity_band(job: Job, point: OperatingPoint, solver: ContactSolver) -> Band | None:
@@ -95,7 +94,7 @@ def pressure_viscosity_band(job: Job, point: OperatingPoint, solver: ContactSolv
         oil = job.lubricant.with_alpha(1.0 + sign * error, point.temperature) or job.lubricant
         return _answer(job, bearing, oil, point, solver)
 
-    return _added([_largest(changed(0.0), changed)])
+    return _added([_largest(changed(0.0), [partial(changed, sign) for sign in (-1.0, 1.0)])])
 
 
 def band_lines(job: Job) -> Iterator[str]:
@@ -144,12 +143,12 @@ def _answer(job: Job, bearing: BearingGeometry, oil: Lubricant, point: Operating
     return mine / compliance, mine * loss / compliance**2, min(one.central_film for one in found)
 
 
-def _largest(base: Answer, changed: Callable[[float], Answer]) -> Band:
-    """The larger change of either sign; of one that no bearing can have, that of the other."""
+def _largest(base: Answer, ends: Iterable[Callable[[], Answer]]) -> Band:
+    """The larger change at either end; at one that no bearing can have, that of the other."""
     changes = []
-    for sign in (-1.0, 1.0):
+    for end in ends:
         try:
-            changes.append([abs(new / old - 1.0) for new, old in zip(changed(sign), base, strict=True)])
+            changes.append([abs(new / old - 1.0) for new, old in zip(end(), base, strict=True)])
         except InputError:
             continue
     return Band(*(max(values, default=math.nan) for values in zip(*changes, strict=True)))

@@ -34,7 +34,7 @@ from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.point.film_formulas import hamrock_dowson_central, kapitza_film, point_groups
 from ehdmaps.physics.rheology import wall_stress_note
-from ehdmaps.physics.solution import UNKNOWN, Estimate, Status, peak_sampling_error
+from ehdmaps.physics.solution import Estimate, PointNumbers, Status, peak_sampling_error
 
 ELLIPTICITIES = (1.0, 12.0)
 """Ellipticities that are solved; a little below a circle is one."""
@@ -55,31 +55,15 @@ _CIRCLE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class PointFilm:
-    """One point contact by finite volumes. Numbers are NaN where the status is not usable.
+class PointFilm(PointNumbers):
+    """One point contact by finite volumes.
 
     Attributes
     ----------
     status, reason
         Typed status, and its cause in words (empty for plain convergence).
-    load_number, oil_number : float
-        Moes' M and L.
     mesh : tuple of int
         Columns along the motion, lines beside it, rows across the film.
-    approach, film_offset, central_film, minimum_film : float
-        [m].
-    max_pressure : float
-        Largest mean of a column [Pa].
-    stiffness, damping : float
-        k, c of slow motion [N/m], [N s/m].
-    film_compliance, loss_compliance : float
-        1/k - 1/k_dry [m/N], c/k^2 [m s/N].
-    steps : int
-        Newton's steps on all meshes.
-    solve_seconds : float
-        Processor time.
-    viscosity_extrapolated : bool
-        The pressure left the range in which the viscosity law was fitted.
     columns : PointColumns or None
         The film over its columns.
     fields : PointFields or None
@@ -88,21 +72,7 @@ class PointFilm:
 
     status: Status
     reason: str
-    load_number: float = math.nan
-    oil_number: float = math.nan
     mesh: tuple[int, int, int] = (0, 0, 0)
-    approach: Estimate = UNKNOWN
-    film_offset: Estimate = UNKNOWN
-    central_film: Estimate = UNKNOWN
-    minimum_film: Estimate = UNKNOWN
-    max_pressure: Estimate = UNKNOWN
-    stiffness: Estimate = UNKNOWN
-    damping: Estimate = UNKNOWN
-    film_compliance: Estimate = UNKNOWN
-    loss_compliance: Estimate = UNKNOWN
-    steps: int = 0
-    solve_seconds: float = 0.0
-    viscosity_extrapolated: bool = False
     columns: PointColumns | None = field(default=None, repr=False)
     fields: PointFields | None = field(default=None, repr=False)
 
@@ -195,7 +165,7 @@ class OpenFoamPointSolver:
         refused = _beyond_groups(M, L)
         mesh = (self.columns, self.lines, self.rows)
         if refused:
-            return PointFilm(Status.OUTSIDE_VALIDITY, refused, M, L)
+            return PointFilm(Status.OUTSIDE_VALIDITY, refused, load_number=M, oil_number=L)
         asked = PointParameters(
             ellipse,
             load,
@@ -209,11 +179,11 @@ class OpenFoamPointSolver:
         try:
             results, columns, fields = self._run(asked, name, with_fields)
         except InputError as error:
-            return PointFilm(Status.OUTSIDE_VALIDITY, str(error), M, L)
+            return PointFilm(Status.OUTSIDE_VALIDITY, str(error), load_number=M, oil_number=L)
         except SolverError as error:
             seconds = cpu_seconds() - began
             status, steps = (error.status, error.iterations) if isinstance(error, RunError) else (Status.FAILED, 0)
-            return PointFilm(status, str(error), M, L, mesh, steps=steps, solve_seconds=seconds)
+            return PointFilm(status, str(error), mesh, load_number=M, oil_number=L, steps=steps, solve_seconds=seconds)
         seconds = cpu_seconds() - began
         return _film(asked, (M, L), results, columns, fields, seconds)
 
@@ -308,8 +278,9 @@ def _film(
         return PointFilm(
             Status.OUTSIDE_VALIDITY,
             reason if physical or thick else "not resolved: no film, or no stiffness",
-            *moes,
             mesh,
+            load_number=moes[0],
+            oil_number=moes[1],
             steps=results.iterations,
             solve_seconds=seconds,
         )
@@ -325,8 +296,9 @@ def _film(
     return PointFilm(
         status,
         "; ".join(filter(None, notes)),
-        *moes,
         mesh,
+        load_number=moes[0],
+        oil_number=moes[1],
         approach=Estimate(approach, offset_error * offset / max(abs(approach), 1e-300)),
         film_offset=Estimate(offset, offset_error),
         central_film=Estimate(central, central_error),

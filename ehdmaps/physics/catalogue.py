@@ -21,7 +21,6 @@ differ by 0.5 mm or so. Static ratings: SKF, Rolling bearings (general catalogue
 from __future__ import annotations
 
 import math
-import re
 from typing import NamedTuple
 
 from ehdmaps.errors import InputError
@@ -49,15 +48,6 @@ _MM = 1e-3
 
 _RATINGS = table("cylindrical")["ratings"]
 """Static ratings C0 [N] by series and bore code, as far as they are certain; others are estimated without."""
-
-
-class Errors(NamedTuple):
-    """Errors of an estimate: relative ones, and the number of rollers that may be too many or too few."""
-
-    raceways: float
-    roller_diameter: float
-    roller_length: float
-    rollers: int
 
 
 class Catalogue(NamedTuple):
@@ -199,33 +189,6 @@ def estimate_from_dimensions(
     name = f"bearing {bore / _MM:g} x {outside_diameter / _MM:g} x {width / _MM:g} mm"
     clearance = class_range(CYLINDRICAL, bore)
     return _geometry(name, entry, basic_static_rating, ERRORS.format(18, 13, 4), clearance)
-
-
-def stated_errors(geometry: BearingGeometry) -> Errors:
-    """Errors that an estimated bearing states of itself.
-
-    Parameters
-    ----------
-    geometry : BearingGeometry
-        A bearing with `estimated` set.
-
-    Raises
-    ------
-    InputError
-        If it states none.
-
-    Examples
-    --------
-    >>> stated_errors(estimate("NU206", 39e3))
-    Errors(raceways=0.03, roller_diameter=0.12, roller_length=0.06, rollers=1)
-    """
-    found = re.search(
-        r"(\d+) %, roller diameter (\d+) %, roller length (\d+) %, .* \+-(\d+)$", geometry.estimated or ""
-    )
-    if found is None:
-        raise InputError(f"bearing {geometry.name!r}: states no errors; allowed: a bearing that `estimate` made")
-    raceways, diameter, length, number = map(int, found.groups())
-    return Errors(raceways / 100, diameter / 100, length / 100, number)
 
 
 def static_rating(geometry: BearingGeometry) -> float:

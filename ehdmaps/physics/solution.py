@@ -151,6 +151,54 @@ class Status(IntEnum):
         return self.name.lower()
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PointNumbers:
+    """Numbers of a point contact, by whichever solver, with their errors; NaN where the status is not usable.
+
+    Attributes
+    ----------
+    load_number, oil_number : float
+        Moes' M and L.
+    approach : float
+        Dry approach less the film offset [m], > 0 when the bodies come together.
+    film_offset : float
+        h_eff, dry less lubricated approach at equal load [m].
+    stiffness : float
+        k = dF/d(approach) [N/m], in the limit of slow motion.
+    damping : float
+        c [N s/m], in the same limit.
+    film_compliance : float
+        1/k - 1/k_dry [m/N].
+    loss_compliance : float
+        c/k^2 [m s/N].
+    central_film, minimum_film : float
+        h at the centre, smallest h [m].
+    max_pressure : float
+        [Pa]; by finite volumes the largest mean of a column.
+    steps : int
+        Newton steps, all grids and starts together.
+    solve_seconds : float
+        Processor time.
+    viscosity_extrapolated : bool
+        The pressure left the range in which the viscosity law was fitted.
+    """
+
+    load_number: float = math.nan
+    oil_number: float = math.nan
+    approach: Estimate = UNKNOWN
+    film_offset: Estimate = UNKNOWN
+    stiffness: Estimate = UNKNOWN
+    damping: Estimate = UNKNOWN
+    film_compliance: Estimate = UNKNOWN
+    loss_compliance: Estimate = UNKNOWN
+    central_film: Estimate = UNKNOWN
+    minimum_film: Estimate = UNKNOWN
+    max_pressure: Estimate = UNKNOWN
+    steps: int = 0
+    solve_seconds: float = 0.0
+    viscosity_extrapolated: bool = False
+
+
 @dataclass(frozen=True)
 class FilmSolution:
     """The film of one contact: what lubrication adds to the dry solids. NaN where the status is not usable.

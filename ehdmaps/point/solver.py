@@ -23,7 +23,7 @@ from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.point.film_formulas import point_groups
 from ehdmaps.physics.point.inlet_heat import WARM, heated_point, point_heats
-from ehdmaps.physics.solution import UNKNOWN, Estimate, Status
+from ehdmaps.physics.solution import Estimate, PointNumbers, Status
 from ehdmaps.physics.spectrum import checked_frequencies
 from ehdmaps.point.problem import PointProblem
 from ehdmaps.point.two_grids import MOST_ERROR, SHARES, PointGroups, Resolution, responses, solve_groups
@@ -87,8 +87,8 @@ class PointField:
 
 
 @dataclass(frozen=True, eq=False)
-class PointSolution:
-    """One point contact. Numbers with their errors, which are NaN where the status is not usable.
+class PointSolution(PointNumbers):
+    """One point contact: where it is, and its numbers.
 
     Attributes
     ----------
@@ -102,30 +102,6 @@ class PointSolution:
         Temperature of both surfaces [K].
     ellipse : Ellipse
         The dry contact.
-    load_number, oil_number : float
-        Moes' M and L.
-    approach : float
-        Dry approach less the film offset [m], > 0 when the bodies come together.
-    film_offset : float
-        h_eff, dry less lubricated approach at equal load [m].
-    stiffness : float
-        k = dF/d(approach) [N/m], in the limit of slow motion.
-    damping : float
-        c [N s/m], in the same limit.
-    film_compliance : float
-        1/k - 1/k_dry [m/N].
-    loss_compliance : float
-        c/k^2 [m s/N].
-    central_film, minimum_film : float
-        h at the centre, smallest h [m].
-    max_pressure : float
-        [Pa].
-    steps : int
-        Newton steps, all grids and starts together.
-    solve_seconds : float
-        Processor time.
-    viscosity_extrapolated : bool
-        The pressure left the range in which the viscosity law was fitted.
     response : PointResponse or None
         Response over frequency, where frequencies were given.
     field : PointField or None
@@ -140,20 +116,6 @@ class PointSolution:
     entrainment_speed: float
     temperature: float
     ellipse: Ellipse
-    load_number: float = math.nan
-    oil_number: float = math.nan
-    approach: Estimate = UNKNOWN
-    film_offset: Estimate = UNKNOWN
-    stiffness: Estimate = UNKNOWN
-    damping: Estimate = UNKNOWN
-    film_compliance: Estimate = UNKNOWN
-    loss_compliance: Estimate = UNKNOWN
-    central_film: Estimate = UNKNOWN
-    minimum_film: Estimate = UNKNOWN
-    max_pressure: Estimate = UNKNOWN
-    steps: int = 0
-    solve_seconds: float = 0.0
-    viscosity_extrapolated: bool = False
     response: PointResponse | None = dataclasses.field(default=None, repr=False)
     field: PointField | None = dataclasses.field(default=None, repr=False)
     groups: PointGroups | None = dataclasses.field(default=None, repr=False)
@@ -222,7 +184,7 @@ def solve(
     M, L = point_groups(ellipse, state, load, entrainment_speed)
     beyond = _beyond_reach(ellipse, load, M, L)
     if beyond:
-        return PointSolution(Status.OUTSIDE_VALIDITY, beyond, *where, M, L)
+        return PointSolution(Status.OUTSIDE_VALIDITY, beyond, *where, load_number=M, oil_number=L)
     seconds = stopwatch()
     peak = float(ellipse.max_pressure(load))
     problem = PointProblem(ellipse.ellipticity, M, L, state.isotherm(peak))
@@ -231,7 +193,10 @@ def solve(
     if groups.numbers is None:
         reason = f"Newton {groups.status.word} at M = {M:.4g}, L = {L:.4g}, ellipticity {ellipse.ellipticity:.4g} "
         reason += "from every start and load tried"
-        return PointSolution(groups.status, reason, *where, M, L, steps=groups.steps, solve_seconds=seconds())
+        steps = groups.steps
+        return PointSolution(
+            groups.status, reason, *where, load_number=M, oil_number=L, steps=steps, solve_seconds=seconds()
+        )
     response = None
     if asked is not None:
         response = _response(groups, asked, ellipse, load, entrainment_speed)
@@ -315,7 +280,15 @@ def _in_si(
     if not physical or error > MOST_ERROR or thick:
         reason = thick or f"not resolved: both grids differ by {100.0 * error:.0f} % in the {worst}"
         reason = reason if physical or thick else "not resolved: no film, or no stiffness, is left by extrapolation"
-        return PointSolution(Status.OUTSIDE_VALIDITY, reason, *where, *moes, steps=groups.steps, solve_seconds=seconds)
+        return PointSolution(
+            Status.OUTSIDE_VALIDITY,
+            reason,
+            *where,
+            load_number=moes[0],
+            oil_number=moes[1],
+            steps=groups.steps,
+            solve_seconds=seconds,
+        )
     status, notes = Status.CONVERGED, []
     if found.film_offset * film / ellipse.rolling_radius > THIN_FILM_LIMIT:
         status = Status.ASYMPTOTE
@@ -332,7 +305,8 @@ def _in_si(
         status,
         "; ".join(notes),
         *where,
-        *moes,
+        load_number=moes[0],
+        oil_number=moes[1],
         approach=Estimate(approach, errors.film_offset * found.film_offset * film / max(abs(approach), 1e-300)),
         film_offset=Estimate(found.film_offset * film, errors.film_offset),
         stiffness=Estimate(found.stiffness * spring, errors.stiffness),

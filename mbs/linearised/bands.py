@@ -38,7 +38,7 @@ from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from mbs.linearised.film_part import CondensedBearing, FilmPart, condensed_bearings, film_part
-from mbs.linearised.reduction import ReductionPart
+from mbs.linearised.mode_part import ModePart
 from mbs.model.contacts import LAW_CHANGES
 from mbs.model.elements import OnRings
 from mbs.model.equilibrium import Equilibrium
@@ -78,7 +78,7 @@ class ModeBands(NamedTuple):
         return film_share(self.by_films[1], self.damping_ratio)
 
 
-def with_reduction(bands: ModeBands, part: ReductionPart | None) -> ModeBands:
+def with_reduction(bands: ModeBands, part: ModePart | None) -> ModeBands:
     """Bands of modes with the size of what modes of bodies leave out that are not kept."""
     if part is None:
         return bands

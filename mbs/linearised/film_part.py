@@ -15,11 +15,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
+from mbs.linearised.mode_part import ModePart, moved
 from mbs.linearised.validity import films_in_balance
 from mbs.model.condensed import Condensed
 from mbs.model.elements import OnRings
@@ -27,21 +27,6 @@ from mbs.model.equilibrium import Equilibrium
 
 FIRST_ORDER = 0.3
 """Change of an eigenvalue, by its imaginary part, above which the first order says nothing."""
-
-
-class FilmLawPart(NamedTuple):
-    """Estimated error of the film law, true less found, shape (modes,) each.
-
-    Attributes
-    ----------
-    frequency : array
-        Part in |eigenvalue|/(2 pi) [Hz].
-    damping_ratio : array
-        Part in the damping ratio.
-    """
-
-    frequency: FloatArray
-    damping_ratio: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,7 +137,7 @@ def film_part(balance: Equilibrium, bearings: Sequence[CondensedBearing] | None 
 
 def film_law_part(
     part: FilmPart | None, eigenvalues: ComplexArray, right: ComplexArray, left: ComplexArray
-) -> FilmLawPart | None:
+) -> ModePart | None:
     """Part that films with memory leave out of frequencies and damping ratios.
 
     Parameters
@@ -164,16 +149,15 @@ def film_law_part(
 
     Returns
     -------
-    FilmLawPart or None
+    ModePart or None
         None where films do not relax, or nothing is known of films that oscillate. NaN of motions that do not
         oscillate, and where the first order says nothing, as near critical damping.
     """
     if part is None or not part.known:
         return None
     swings = eigenvalues.imag > 0.0
-    s, change = eigenvalues[swings], part.eigenvalue_changes(eigenvalues, right, left)[0][swings]
-    moved = np.where(np.abs(change) <= FIRST_ORDER * s.imag, s + change, np.nan)
-    errors = np.full((2, eigenvalues.size), np.nan)
-    errors[0, swings] = (np.abs(moved) - np.abs(s)) / (2.0 * np.pi)
-    errors[1, swings] = s.real / np.abs(s) - moved.real / np.abs(moved)
-    return FilmLawPart(*errors)
+    change = np.full(eigenvalues.shape, complex(np.nan, np.nan))
+    found = part.eigenvalue_changes(eigenvalues, right, left)[0]
+    tells = swings & (np.abs(found) <= FIRST_ORDER * eigenvalues.imag)
+    change[tells] = found[tells]
+    return moved(eigenvalues, change)

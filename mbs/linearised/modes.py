@@ -26,8 +26,9 @@ from mbs.linearised.dynamic import (
     at_own_frequency,
     system_film_states,
 )
-from mbs.linearised.film_part import FilmLawPart, film_law_part, film_part
-from mbs.linearised.reduction import ReductionPart, reduction_part
+from mbs.linearised.film_part import film_law_part, film_part
+from mbs.linearised.mode_part import ModePart
+from mbs.linearised.reduction import reduction_part
 from mbs.model.equilibrium import Equilibrium
 
 FREE = 1e-6
@@ -61,9 +62,9 @@ class Modes:
         array.
     bands : ModeBands or None
         What errors of known size may change, see `mbs.linearised.bands`; None for laws that state none.
-    film_law : FilmLawPart or None
+    film_law : ModePart or None
         What films with memory leave out, see `mbs.linearised.film_part`; None where that is not known.
-    reduction : ReductionPart or None
+    reduction : ModePart or None
         What modes of bodies leave out that are not kept, see `mbs.linearised.reduction`; its size is in the bands, too.
         None where no body is reduced, or none tells.
     """
@@ -75,8 +76,8 @@ class Modes:
     lost: tuple[LostMode, ...] = ()
     among_films: int = 0
     bands: ModeBands | None = None
-    film_law: FilmLawPart | None = None
-    reduction: ReductionPart | None = None
+    film_law: ModePart | None = None
+    reduction: ModePart | None = None
 
     @property
     def frequency(self) -> FloatArray:

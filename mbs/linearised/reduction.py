@@ -19,39 +19,15 @@ damping ratios by up to 0.47 %; both are told within a tenth (`tests/verificatio
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import NamedTuple
 
 import numpy as np
 
-from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from ehdmaps.arrays import ComplexArray, FloatArray
+from mbs.linearised.mode_part import ModePart, moved
 from mbs.model.system import System
 
 REACH = 0.9
 """Part of a cut-off up to which modes are told how wrong they are; what is left out resonates from there on."""
-
-
-class ReductionPart(NamedTuple):
-    """Part that modes of bodies leave out that are not kept, true less found, shape (modes,) each.
-
-    Attributes
-    ----------
-    frequency : array
-        Part in |eigenvalue|/(2 pi) [Hz].
-    damping_ratio : array
-        Part in the damping ratio.
-    """
-
-    frequency: FloatArray
-    damping_ratio: FloatArray
-
-    def of(self, which: IntArray | BoolArray) -> ReductionPart:
-        """The part of some of the modes."""
-        return ReductionPart(self.frequency[..., which], self.damping_ratio[..., which])
-
-    @property
-    def sizes(self) -> FloatArray:
-        """Sizes of both, shape (2, modes)."""
-        return np.abs(np.array(self))
 
 
 def cut_off(system: System) -> float:
@@ -99,7 +75,7 @@ def left_out(
 
 def reduction_part(
     system: System, eigenvalues: ComplexArray, right: ComplexArray, left: ComplexArray
-) -> ReductionPart | None:
+) -> ModePart | None:
     """Part of frequencies and damping ratios that is left out; None where no body is reduced, or none tells.
 
     Parameters
@@ -112,13 +88,7 @@ def reduction_part(
     if all(body.left_out is None for body in system.bodies):
         return None
     rows = np.asarray(np.linalg.solve(system.mass.T, left.T).T, dtype=np.complex128)
-    change = left_out(system, eigenvalues, right, rows)
-    size, moved = np.abs(eigenvalues), np.abs(eigenvalues + change)
-    ratios = [
-        -values.real / np.where(of > 0.0, of, 1.0)
-        for values, of in ((eigenvalues, size), (eigenvalues + change, moved))
-    ]
-    return ReductionPart((moved - size) / (2.0 * np.pi), ratios[1] - ratios[0])
+    return moved(eigenvalues, left_out(system, eigenvalues, right, rows))
 
 
 def undamped_part(

@@ -22,8 +22,9 @@ from mbs.linearised.averaged import AveragedEquilibrium, PitchSpread, mean_equil
 from mbs.linearised.bands import film_share, law_bands, with_reduction
 from mbs.linearised.dynamic import LostMode
 from mbs.linearised.linear import checked_response, peak_places, responses, with_peaks
+from mbs.linearised.mode_part import ModePart
 from mbs.linearised.modes import StateModes, UndampedModes, energy_shares, state_modes, undamped_modes
-from mbs.linearised.reduction import ReductionPart, reduction_part, undamped_part
+from mbs.linearised.reduction import reduction_part, undamped_part
 from mbs.linearised.sweep_result import BearingSweep, ComplexSweep, ResponseSweep, Sweep, UndampedSweep, straightened
 from mbs.linearised.tracking import Match, ModeSet, compose, match, numbers, tracks
 from mbs.linearised.validity import DynamicLoad, dynamic_loads
@@ -501,7 +502,7 @@ def _damped(points: Sequence[_Recorded], links: Sequence[Along], here: IntArray)
         spreads[0],
         spreads[1],
         lost,
-        ReductionPart(*reduction),
+        ModePart(*reduction),
     )
 
 

@@ -25,8 +25,8 @@ import numpy.typing as npt
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from mbs.linearised.dynamic import LostMode
+from mbs.linearised.mode_part import ModePart
 from mbs.linearised.modes import damping_ratio
-from mbs.linearised.reduction import ReductionPart
 from mbs.linearised.validity import DynamicLoad
 from mbs.model.elements import Input, Sensor
 
@@ -104,7 +104,7 @@ class ComplexSweep:
         Half of what both vary over the angles of the cage, to first order [Hz], [1]; 0 for one angle.
     lost : tuple of tuple of LostMode
         Modes that could not be brought to the films of their own frequency, at each speed.
-    reduction : ReductionPart
+    reduction : ModePart
         What modes of bodies leave out that are not kept, shape (speeds, modes) each; its size is in the bands, too. NaN
         where no body is reduced, or none tells.
     """
@@ -120,7 +120,7 @@ class ComplexSweep:
     frequency_spread: FloatArray
     damping_ratio_spread: FloatArray
     lost: tuple[tuple[LostMode, ...], ...]
-    reduction: ReductionPart
+    reduction: ModePart
 
     @property
     def frequency(self) -> FloatArray:

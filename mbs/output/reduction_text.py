@@ -7,13 +7,14 @@ import math
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from mbs.linearised.reduction import REACH, ReductionPart, cut_off, unknown_ends
+from mbs.linearised.mode_part import ModePart
+from mbs.linearised.reduction import REACH, cut_off, unknown_ends
 from mbs.model.system import System
 from mbs.scene.fields import HERTZ
 from mbs.settings import ROUND_OFF
 
 
-def reduction_lines(system: System, frequency: FloatArray, ratio: FloatArray, part: ReductionPart | None) -> list[str]:
+def reduction_lines(system: System, frequency: FloatArray, ratio: FloatArray, part: ModePart | None) -> list[str]:
     """Lines on what the reduction of bodies leaves out of modes; none where no body is reduced.
 
     Parameters
@@ -22,7 +23,7 @@ def reduction_lines(system: System, frequency: FloatArray, ratio: FloatArray, pa
         The system.
     frequency, ratio : array, shape (...,)
         Frequencies [Hz] and damping ratios of the modes that are shown; NaN where there is none.
-    part : ReductionPart or None
+    part : ModePart or None
         What is left out of them, of the same shape.
     """
     cut = cut_off(system)

@@ -15,6 +15,9 @@ from mbs.unknowns.unknown import Unknown
 FREEDOMS = 6
 """Rows of K and C of a bearing."""
 
+EITHER_SIGN = ("bearing_force",)
+"""Variables that may have either sign."""
+
 Variables = Mapping[str, FloatArray]
 """Values by the names that files have for them, each of its own shape."""
 
@@ -38,13 +41,15 @@ def variable_bands(
     found, first = {}, 0
     for name, value in centre.items():
         place = first + np.arange(value.size).reshape(value.shape)
-        found[name] = dataclasses.replace(both.of(place), signed=_signed(value))
+        found[name] = dataclasses.replace(both.of(place), signed=_signed(name, value))
         first += value.size
     return found
 
 
-def _signed(value: FloatArray) -> BoolArray:
-    """Entries of matrices that couple two motions, which may have either sign."""
+def _signed(name: str, value: FloatArray) -> BoolArray:
+    """Values that may have either sign: forces, and entries of matrices that couple two motions."""
+    if name in EITHER_SIGN:
+        return np.ones(value.shape, dtype=np.bool_)
     matrices = value.ndim > 1 and value.shape[-1] == value.shape[-2] == FREEDOMS
     coupling = ~np.eye(FREEDOMS, dtype=np.bool_) if matrices else np.False_
     return np.broadcast_to(coupling, value.shape)

@@ -1,6 +1,8 @@
 """A bearing by its designation and an oil by its class: the names, the numbers, and every command and picture."""
 
 import json
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,8 +16,9 @@ from ehdmaps.jobs.job_text import lubricant_keys
 from ehdmaps.jobs.reader import parse_job, read_job
 from ehdmaps.jobs.solvers import of_map
 from ehdmaps.physics.bearing import BEARINGS
-from ehdmaps.physics.catalogue import _RATINGS, designated, estimate, stated_errors
+from ehdmaps.physics.catalogue import _RATINGS, designated, estimate
 from ehdmaps.physics.contact import OperatingPoint
+from ehdmaps.physics.designations.estimates import estimated_parts
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
 from ehdmaps.physics.own_oil import _LIMITS, _QUADRATICS, CLASSES, viscosity_100, viscosity_index
 from mbs.cli import main as mbs_main
@@ -63,9 +66,10 @@ def test_other_designs_are_refused(text, words):
 def test_tabulated_ratings_suit_the_width(key):
     """Rollers by the rating and by the share of the width agree to the stated 20 %: a slip of the table would not."""
     by_rating = estimate(f"NU{key}")
-    stated = stated_errors(by_rating)
+    (length,) = (part for part in estimated_parts(by_rating) if part.name == "roller length")
     assert 0.5 < by_rating.roller_length / _width(key) < 0.5 * 1.4
-    assert stated.roller_length == 0.2
+    assert length.held == "+-20 %"
+    assert [end["roller_length"] / by_rating.roller_length for end in length.ends] == pytest.approx([1.2, 0.8])
     assert "SKF's static rating" in by_rating.estimated
 
 
@@ -77,7 +81,8 @@ def _width(key):
 
 def test_errors_are_stated_by_estimates_alone():
     with pytest.raises(InputError, match=r"bearing 'NU308': states no errors; allowed: a bearing that `estimate` made"):
-        stated_errors(BEARINGS["NU308"])
+        geometry_band(SimpleNamespace(bearing=replace(BEARINGS["NU308"], estimated="by somebody")), None, None)
+    assert list(estimated_parts(BEARINGS["NU308"])) == []
 
 
 @pytest.mark.parametrize(

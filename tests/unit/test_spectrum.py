@@ -14,7 +14,7 @@ import ehdmaps
 from ehdmaps import STEEL, BearingGeometry, Lubricant, OperatingPoint, Status
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.reader import read_job
-from ehdmaps.jobs.solve.plots import plot_spectrum, spectrum_figure
+from ehdmaps.jobs.solve.plots import spectrum_figure, write_page
 from ehdmaps.jobs.solve.spectrum import spectrum_record, spectrum_table
 from ehdmaps.physics.hertz import half_width
 
@@ -145,5 +145,5 @@ def test_error_bands_are_what_is_stated(found: xr.Dataset) -> None:
 
 @pytest.mark.slow
 def test_figure_is_written(found: xr.Dataset, tmp_path) -> None:
-    plot_spectrum(found, "NU308", tmp_path / "z.png")
+    write_page(tmp_path / "z.png", spectrum_figure, found, "NU308")
     assert (tmp_path / "z.png").stat().st_size > 10_000

@@ -22,7 +22,7 @@ from mbs.analyses.modes import modes as analysed
 from mbs.commands.modes import _table
 from mbs.linearised.averaged import steady_system
 from mbs.linearised.dynamic import element_dynamic_stiffness
-from mbs.linearised.film_part import FilmLawPart
+from mbs.linearised.mode_part import ModePart
 from mbs.linearised.modes import modes
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
@@ -107,7 +107,7 @@ def test_it_stands_beside_each_mode(emap):
     head, *lines = _table(found.modes, np.arange(found.modes.frequency.size))
     assert head.count("+-  film law") == 2
     assert f"{law.frequency[k]:+10.2g}" in lines[k] and f"{law.damping_ratio[k]:+10.2g}" in lines[k]
-    unknown = dataclasses.replace(found.modes, film_law=FilmLawPart(*np.full((2, law.frequency.size), np.nan)))
+    unknown = dataclasses.replace(found.modes, film_law=ModePart(*np.full((2, law.frequency.size), np.nan)))
     assert _table(unknown, np.array([k]))[1].count(f"{'-':>10s}") == 2
     assert "how films relax" in band_lines(memory)[0]
     assert film_law_line(memory, True)[0].startswith("  film law: what one relaxation time of a slice leaves out of ")

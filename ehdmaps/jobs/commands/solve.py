@@ -96,9 +96,9 @@ def _over_frequency(arguments: argparse.Namespace, request: _Request) -> tuple[s
     solver = _solver(arguments, job)
     dataset = spectrum_dataset(job.contacts, job.lubricant, point, request.frequencies, solver)
     if arguments.plot is not None:
-        from ehdmaps.jobs.solve.plots import plot_spectrum
+        from ehdmaps.jobs.solve.plots import spectrum_figure, write_page
 
-        plot_spectrum(dataset, f"{job.title}, {job.lubricant.title}", Path(arguments.plot))
+        write_page(Path(arguments.plot), spectrum_figure, dataset, f"{job.title}, {job.lubricant.title}")
         tell(f"{arguments.plot}: written")
     records = [
         {

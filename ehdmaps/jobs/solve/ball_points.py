@@ -96,9 +96,9 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         for name, ellipse in zip(CONTACTS, request.bearing.contacts(STEEL), strict=True)
     }
     if request.plot is not None:
-        from ehdmaps.jobs.solve.plots import plot_points
+        from ehdmaps.jobs.solve.plots import points_figure, write_page
 
-        plot_points(solutions, _heading(request), request.plot)
+        write_page(request.plot, points_figure, solutions, _heading(request))
         tell(f"{request.plot}: written")
     text = _json(solutions, request.inlet_heat) if arguments.json else _table(request, solutions)
     return text, 0 if all(solution.status.usable for solution in solutions.values()) else 1
@@ -169,7 +169,9 @@ def read_point(
     return PointSolution(
         Status(int(films.status[0])),
         "; ".join(filter(None, (str(films.reason[0]), note))),
-        *(load, speed, temperature, ellipse, float(films.load_number[0]), float(films.oil_number[0])),
+        *(load, speed, temperature, ellipse),
+        load_number=float(films.load_number[0]),
+        oil_number=float(films.oil_number[0]),
         **numbers,  # type: ignore[arg-type]
         solve_seconds=seconds(),
         viscosity_extrapolated=bool(films.viscosity_extrapolated[0]),

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import dataclasses
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -18,14 +19,8 @@ from ehdmaps.openfoam.point_case import PointColumns
 from ehdmaps.outputs import FIELDS, Output, output_problems
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ellipse import Ellipse
-from ehdmaps.physics.solution import Estimate
+from ehdmaps.physics.solution import PointNumbers
 from ehdmaps.point.solver import PointField, PointSolution
-
-NUMBERS = (
-    *("approach", "film_offset", "stiffness", "damping", "film_compliance", "loss_compliance"),
-    *("central_film", "minimum_film", "max_pressure"),
-)
-"""Numbers that both solutions have, each with an error."""
 
 
 @dataclass(frozen=True)
@@ -123,17 +118,9 @@ def fields_path(path: Path, contact: str) -> Path:
 
 def _solution(found: PointFilm, ellipse: Ellipse, load: float, speed: float, temperature: float) -> PointSolution:
     """The same numbers in the words of the other solver."""
-    numbers: Mapping[str, Estimate] = {name: getattr(found, name) for name in NUMBERS}
-    return PointSolution(
-        found.status,
-        found.reason,
-        *(load, speed, temperature, ellipse, found.load_number, found.oil_number),
-        **numbers,  # type: ignore[arg-type]
-        steps=found.steps,
-        solve_seconds=found.solve_seconds,
-        viscosity_extrapolated=found.viscosity_extrapolated,
-        field=None if found.columns is None else _field(found.columns),
-    )
+    numbers: dict[str, Any] = {one.name: getattr(found, one.name) for one in dataclasses.fields(PointNumbers)}
+    field = None if found.columns is None else _field(found.columns)
+    return PointSolution(found.status, found.reason, load, speed, temperature, ellipse, **numbers, field=field)
 
 
 def _field(columns: PointColumns) -> PointField:

@@ -50,7 +50,7 @@ class FilmOutputs:
         written : list of str
             What was written, in words.
         """
-        from ehdmaps.jobs.solve.plots import FilmRow, plot_films
+        from ehdmaps.jobs.solve.plots import FilmRow, films_figure, write_page
         from ehdmaps.openfoam.fields import write_fields
         from ehdmaps.openfoam.solver import OpenFoamSolver
 
@@ -76,7 +76,7 @@ class FilmOutputs:
                 f"{job.title}, {job.lubricant.title}: {LOAD.text(point.load)}, {SPEED.text(point.entrainment_speed)}, "
                 f"{temperature}; OpenFOAM, {solver.flow.replace('_', ' ')}"
             )
-            plot_films(rows, heading, self.plot)
+            write_page(self.plot, films_figure, rows, heading)
             written.append(f"{self.plot}: written")
         return films, written
 

@@ -6,7 +6,7 @@ view, and along both axes. The complex stiffness over frequency has a column a c
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -60,17 +60,17 @@ class FilmRow:
     grid: GridSolution
 
 
-def plot_films(rows: Sequence[FilmRow], heading: str, output: Path) -> None:
-    """Draw the page and write it.
+def write_page(output: Path, draw: Callable[..., Figure], *given: object) -> None:
+    """Draw a page and write it.
 
     Parameters
     ----------
-    rows : sequence of FilmRow
-        One a contact.
-    heading : str
-        Heading of the page.
     output : Path
         The picture; its ending decides the format (png, pdf, svg).
+    draw : callable
+        `films_figure`, `points_figure` or `spectrum_figure`.
+    *given
+        What it takes.
 
     Raises
     ------
@@ -78,15 +78,28 @@ def plot_films(rows: Sequence[FilmRow], heading: str, output: Path) -> None:
         If it cannot be written, or the ending is not known.
     """
     with mpl.rc_context(_FONT):
-        figure = Figure(figsize=(ROW[0], ROW[1] * len(rows) + 0.4), layout="constrained")
-        write_heading(figure, heading, 10, "bold")
-        warm = any(row.grid.fields is not None and row.grid.fields.T is not None for row in rows)
-        panels = figure.subplots(len(rows), 4 if warm else 3, squeeze=False)
-        for row, axes in zip(rows, panels, strict=True):
-            _film_row(row, *axes[:3])
-            if warm:
-                _temperatures(row, axes[3], figure)
-        write_figure(figure, output, RESOLUTION)
+        write_figure(draw(*given), output, RESOLUTION)
+
+
+def films_figure(rows: Sequence[FilmRow], heading: str) -> Figure:
+    """Draw the page of films by openfoam.
+
+    Parameters
+    ----------
+    rows : sequence of FilmRow
+        One a contact.
+    heading : str
+        Heading of the page.
+    """
+    figure = Figure(figsize=(ROW[0], ROW[1] * len(rows) + 0.4), layout="constrained")
+    write_heading(figure, heading, 10, "bold")
+    warm = any(row.grid.fields is not None and row.grid.fields.T is not None for row in rows)
+    panels = figure.subplots(len(rows), 4 if warm else 3, squeeze=False)
+    for row, axes in zip(rows, panels, strict=True):
+        _film_row(row, *axes[:3])
+        if warm:
+            _temperatures(row, axes[3], figure)
+    return figure
 
 
 def places(x: FloatArray, pressure: FloatArray) -> dict[str, float]:
@@ -196,29 +209,8 @@ _THICKEST = 3.0
 """Largest film of the colours, over the central one."""
 
 
-def plot_points(solutions: Mapping[str, PointSolution], heading: str, output: Path) -> None:
-    """Draw the page and write it.
-
-    Parameters
-    ----------
-    solutions : mapping of str to PointSolution
-        Solutions by the name of their contact.
-    heading : str
-        Heading of the page.
-    output : Path
-        The picture; its ending decides the format (png, pdf, svg).
-
-    Raises
-    ------
-    InputError
-        If it cannot be written, or the ending is not known.
-    """
-    with mpl.rc_context(_FONT):
-        write_figure(points_figure(solutions, heading), output, RESOLUTION)
-
-
 def points_figure(solutions: Mapping[str, PointSolution], heading: str) -> Figure:
-    """Draw the page.
+    """Draw the page of point contacts.
 
     Parameters
     ----------
@@ -298,29 +290,8 @@ COLUMN = (5.6, 7.6)
 _LINE, _SLOW, _NEGATIVE = "#1b6ca8", "0.45", "#c8102e"
 
 
-def plot_spectrum(dataset: xr.Dataset, title: str, output: Path) -> None:
-    """Draw the page and write it.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        See `ehdmaps.jobs.solve.spectrum.spectrum_dataset`.
-    title : str
-        Bearing and oil.
-    output : Path
-        The picture; its ending decides the format (png, pdf, svg).
-
-    Raises
-    ------
-    InputError
-        If it cannot be written, or the ending is not known.
-    """
-    with mpl.rc_context(_FONT):
-        write_figure(spectrum_figure(dataset, title), output, RESOLUTION)
-
-
 def spectrum_figure(dataset: xr.Dataset, title: str) -> Figure:
-    """Draw the page.
+    """Draw the page of contacts over frequency.
 
     Parameters
     ----------

@@ -1,0 +1,70 @@
+"""Parts of an estimated inner geometry: how far each may be off, by the words in which the estimate says so.
+
+These words are what scenes, jobs and map files keep of an estimate, see `ERRORS` of the catalogues of each kind.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+_PERCENT = re.compile(r"(roller diameter|roller length|ball diameter|pitch diameter) (?:to )?(\d+) %")
+_GROOVES = re.compile(r"groove radii ([\d.]+) to ([\d.]+)")
+_COUNT = re.compile(r"number of (rollers|balls) \+-(\d+)")
+_EVEN = ("roller diameter",)
+"""Parts whose effect on stiffness and damping is even, to 2 %: one end tells the other."""
+
+
+class Part(NamedTuple):
+    """Part of a geometry that may be off.
+
+    Attributes
+    ----------
+    name : str
+        What it is, such as "roller diameter".
+    held : str
+        How far it may be off, such as "+-12 %".
+    ends : tuple of dict
+        Fields of the geometry and their values at both ends [m], [1].
+    even : bool
+        Whether one end tells the other, with the opposite sign.
+    """
+
+    name: str
+    held: str
+    ends: tuple[dict[str, Any], dict[str, Any]]
+    even: bool = False
+
+
+def estimated_parts(geometry: Any, share: float = 1.0) -> Iterator[Part]:
+    """Parts that an estimated geometry says may be off; none of one that is known.
+
+    Parameters
+    ----------
+    geometry : BearingGeometry, BallGeometry, TaperedGeometry or RibbedGeometry
+        The geometry.
+    share : float
+        Part of its own errors that is taken.
+
+    Examples
+    --------
+    >>> from ehdmaps.physics.catalogue import estimate
+    >>> [(part.name, part.held) for part in estimated_parts(estimate("NU206", 39e3))]
+    [('roller diameter', '+-12 %'), ('roller length', '+-6 %'), ('roller count', '13 +-1')]
+    """
+    words: str = geometry.estimated or ""
+    for name, percent in _PERCENT.findall(words):
+        key, size = name.replace(" ", "_"), share * float(percent) / 100.0
+        above, below = ({key: getattr(geometry, key) * (1.0 + sign * size)} for sign in (1.0, -1.0))
+        yield Part(name, f"+-{100.0 * size:.3g} %", (above, below), name in _EVEN)
+    if found := _GROOVES.search(words):
+        for side in ("inner", "outer"):
+            key = f"{side}_conformity"
+            value = getattr(geometry, key)
+            low, high = (value + share * (float(end) - value) for end in found.groups())
+            yield Part(f"{side} groove", f"{low:.4g} to {high:.4g} of the ball", ({key: low}, {key: high}))
+    if found := _COUNT.search(words):
+        key, most = found[1], int(found[2])
+        count = getattr(geometry, key)
+        yield Part(f"{key[:-1]} count", f"{count} +-{most}", ({key: count - most}, {key: count + most}))

@@ -1,0 +1,145 @@
+"""What is not known of bearings of every kind: what is held open, and bands beside machines that are solved again.
+
+The oracle is the command itself at the ends of the one thing that is open, a temperature: no look, pairing or sum is in
+it. With one unknown a bound is the further of both ends, and of the middle; numerics widen it by their size at most.
+"""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from mbs import assemble, parse_scene
+from mbs.unknowns.held_open import held_open
+from tests.cases.commands import check_units, run
+from tests.conformance.machines import KINDS, MIXED
+from tests.conformance.test_one_bearing import KINDS as DESIGNATIONS
+
+WITH_FILMS = [machine for machine in (*KINDS, *MIXED[:2]) if machine.films]
+NAMES = [machine.name for machine in WITH_FILMS]
+
+KNOWN = {
+    "clearance": "0 um", "viscosity": "0 %", "pressure_viscosity": "0 %", "geometry": "0 %", "preload": "0 %",
+    "profile": "0 %", "cage_angle": "0 deg",
+}  # fmt: skip
+"""All but the temperature, which is known to 2 K."""
+TOLERANCES = "\n".join(["[tolerances]", 'temperature = "2 K"', *(f'{key} = "{at}"' for key, at in KNOWN.items())])
+ENDS = ("58 degC", "62 degC")
+
+EXACT = 1e-9
+"""Part that sums of logarithms, and equilibria from other starts, leave."""
+
+
+def solved(capsys, command, *options, **more):
+    """The dataset of a command on the machine in the folder, and what it says."""
+    status, out, err = run(capsys, command, *more.get("ask", ("machine.toml",)), *options, "-o", "a.nc")
+    assert status == 0, err or out
+    with xr.open_dataset("a.nc") as data:
+        return data.load(), out
+
+
+@pytest.fixture(params=WITH_FILMS, ids=NAMES)
+def machine(request, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "machine.toml").write_text(f"{request.param.text()}\n{TOLERANCES}\n", encoding="utf-8")
+    return request.param
+
+
+def hold(found, ends, names, slack=0.0):
+    """Bounds enclose the value and both ends, and nothing beyond them but the slack of each side."""
+    for name in names:
+        low, value, high = (found[f"{name}{side}"].values for side in ("_low", "", "_high"))
+        known = np.isfinite(low)
+        assert known.any(), name
+        all_of_them = np.array([value, *(end[name].values for end in ends)])
+        least, most = all_of_them.min(axis=0), all_of_them.max(axis=0)
+        room = EXACT * np.nanmax(np.abs(all_of_them))
+        wide = found[f"{name}{slack}"].values if slack else 0.0
+        for told, true in ((least - low, wide), (high - most, wide)):
+            inside = (told >= -room) & (told <= true + room)
+            assert np.all(inside[known]), name
+
+
+def test_statics(machine, capsys):
+    found, out = solved(capsys, "statics", "--bands", "all")
+    check_units(found)
+    assert "held open: temperature +-2 K" in out
+    ends = [solved(capsys, "statics", "--temperature", end)[0] for end in ENDS]
+    assert np.any(ends[0]["bearing_stiffness"].values != ends[1]["bearing_stiffness"].values)
+    hold(found, ends, [name.removesuffix("_low") for name in found if name.endswith("_low")])
+    assert {"bearing_stiffness_low", "bearing_force_low", "minimum_film_low"} <= set(found)
+
+
+def test_modes(machine, capsys):
+    """Modes keep their order over so small a change; those that do not swing everywhere have no bounds."""
+    found, _ = solved(capsys, "modes", "--bands", "all", "--highest", "3 kHz")
+    check_units(found)
+    ends = [solved(capsys, "modes", "--temperature", end)[0] for end in ENDS]
+    banded = np.flatnonzero(np.isfinite(found["frequency_low"].values))
+    nearest = [
+        [int(np.argmin(np.abs(end["frequency"].values - value))) for value in found["frequency"].values[banded]]
+        for end in ends
+    ]
+    assert banded.size and all(len(set(which)) == banded.size for which in nearest)
+    shown = [end.isel(mode=which) for end, which in zip(ends, nearest, strict=True)]
+    hold(found.isel(mode=banded), shown, ("frequency", "damping_ratio"), slack="_error")
+
+
+@pytest.mark.parametrize(
+    ("command", "names"),
+    [
+        ("lsa", ("peak_frequency", "peak_level")),
+        ("sweep", ("complex_frequency", "complex_damping_ratio")),
+        ("critical", ("critical_speed", "critical_damping_ratio")),
+    ],
+)
+@pytest.mark.slow
+def test_responses_and_speeds(machine, command, names, capsys):
+    """Values lie within their bounds, some of which are apart."""
+    found, out = solved(capsys, command, "--bands", "all")
+    check_units(found)
+    assert "held open: temperature +-2 K" in out
+    for name in names:
+        if name not in found:  # no peak of a mode, no critical speed
+            continue
+        low, value, high = (found[f"{name}{side}"].values for side in ("_low", "", "_high"))
+        known = np.isfinite(low)
+        assert np.all((low <= value)[known] & (value <= high)[known])
+        assert not known.any() or np.any((low < high)[known])
+
+
+@pytest.mark.parametrize("name", DESIGNATIONS)
+def test_one_bearing(name, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    known = "; ".join(f"{key} = +- {at}" for key, at in KNOWN.items())
+    ask = (name, "--load", "2 kN", "--speed", "1500 rpm", "--law", "table", *DESIGNATIONS[name])
+    at = ("--temperature", "60 degC", "--know", f"temperature = +- 2 K; {known}")
+    found, out = solved(capsys, "bearing", *at, "--bands", "all", ask=ask)
+    check_units(found)
+    assert "held open: temperature +-2 K" in out and "K along, N/um" in out
+    ends = [solved(capsys, "bearing", "--temperature", end, ask=ask)[0] for end in ENDS]
+    told = [each.removesuffix("_low") for each in found if each.endswith("_low")]
+    hold(found, ends, told)
+    assert {"stiffness_along", "damping_along", "minimum_film"} <= set(told)
+
+
+@pytest.mark.parametrize("machine", WITH_FILMS, ids=NAMES)
+def test_what_is_held_open_has_a_row_for_each_part(machine):
+    """Each error that an estimate states of itself, a clearance of all but tapered rollers, and profiles of rollers."""
+    scene = assemble(parse_scene(machine.text(), machine.name, "machine.toml"), law="hertz").scene
+    found = held_open(scene)
+    groups = {one.group for one in found}
+    assert {"temperature", "pressure_viscosity", "cage_angle"} <= groups
+    for entry in scene.of_all_kinds:
+        mine = {one.name for one in found if one.name.endswith(f" of {entry.name}")}
+        tapered, rollers = "taper" in entry.geometry.kind, hasattr(entry.geometry, "roller_diameter")
+        assert (f"clearance of {entry.name}" in mine) != tapered
+        assert (f"profile of {entry.name}" in mine) == rollers
+        stated = re.findall(
+            r"(?:^|, |: )([a-z ]+?) (?:to )?(?:about )?[\d.]+ (?:%|deg)", entry.geometry.estimated or ""
+        )
+        for part in stated:
+            assert f"{part} of {entry.name}" in mine, part
