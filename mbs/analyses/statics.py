@@ -77,6 +77,12 @@ class StaticsResult:
 
         return variable_bands(make, banded_variables(self.dataset), held_open(self.model.scene))
 
+    def bounded(self) -> xr.Dataset:
+        """The data set with these bounds."""
+        from mbs.unknowns.bounds import bounded
+
+        return bounded(self.dataset, self.bands)
+
     def plot(self) -> Figure:
         """Figure that `mbs statics --plot` writes: loads of the rollers and slices of each bearing."""
         from mbs.output.bearing_plot import statics_figure

@@ -46,7 +46,6 @@ from mbs.output.sweep_data import critical_dataset, sweep_dataset
 from mbs.scene.assembly import Model, choice_attributes, law_attributes, laws_attributes
 from mbs.scene.scene import Scene
 from mbs.settings import CAGE_ANGLES, SweepRange
-from mbs.unknowns.bounds import SIDES
 
 if TYPE_CHECKING:
     from mbs.output.files import Figure
@@ -110,18 +109,16 @@ class SweepResult:
 
     def bounded(self) -> xr.Dataset:
         """The data set with bounds of frequencies and damping ratios of complex modes."""
+        from mbs.unknowns.bounds import with_sides
+
         found = self.dataset
         for name in ("frequency", "damping_ratio"):
-            own = found[f"complex_{name}"]
-            for index, (side, sign, words) in enumerate(zip(SIDES, (-1.0, 1.0), ("lower", "upper"), strict=True)):
-                parts = np.full(own.shape, np.nan)
-                for case, bands in enumerate(self.bands):
-                    part = getattr(bands, name)[index]
-                    parts[case, :, : part.shape[1]] = part
-                long = f"{words} bound of 90 % of what is not known of the {own.attrs['long_name']}"
-                attributes = {"units": own.attrs["units"], "long_name": long}
-                values = np.maximum(own.values * (1.0 + sign * parts), 0.0)
-                found = found.assign({f"complex_{name}_{side}": (own.dims, values, attributes)})
+            value = found[f"complex_{name}"].values
+            fall, rise = np.full((2, *value.shape), np.nan)
+            for case, bands in enumerate(self.bands):
+                parts = getattr(bands, name)
+                fall[case, :, : parts.shape[2]], rise[case, :, : parts.shape[2]] = parts
+            found = with_sides(found, f"complex_{name}", np.maximum(value * (1.0 - fall), 0.0), value * (1.0 + rise))
         return found
 
     def plot(self) -> Figure:
@@ -362,13 +359,10 @@ class CriticalResult:
 
     def bounded(self) -> xr.Dataset:
         """The data set with these bounds."""
-        found = self.dataset
-        for column, (name, side) in enumerate(itertools.product(("critical_speed", "critical_damping_ratio"), SIDES)):
-            own = found[name]
-            words = f"{'lower' if side == 'low' else 'upper'} bound of 90 % of what is not known of the"
-            attributes = {"units": own.attrs["units"], "long_name": f"{words} {own.attrs['long_name']}"}
-            found = found.assign({f"{name}_{side}": (own.dims, self.bounds[:, column], attributes)})
-        return found
+        from mbs.unknowns.bounds import with_sides
+
+        speed, ratio = self.bounds[:, :2].T, self.bounds[:, 2:].T
+        return with_sides(with_sides(self.dataset, "critical_speed", *speed), "critical_damping_ratio", *ratio)
 
     def plot(self) -> Figure:
         """Figure that `mbs critical --plot` writes: modes with the orders, and the responses over speed."""

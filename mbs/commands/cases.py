@@ -22,13 +22,12 @@ from mbs.scene.choices import (
     CHOICES,
     LAWS,
     OPTIONS,
-    Combination,
     LawChoice,
     Subject,
-    combinations,
     named_law,
     opened_maps,
 )
+from mbs.scene.combinations import Combination, combinations
 from mbs.scene.contact_laws import table_path
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene

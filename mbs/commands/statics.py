@@ -26,7 +26,6 @@ from mbs.output.model_text import heading
 from mbs.output.state_text import DAMPINGS, STIFFNESSES, flooded_note, largest_torque, life_lines, loss_words
 from mbs.planning.question import at_one_speed
 from mbs.scene.assembly import Model, ring_motions
-from mbs.unknowns.bounds import bounded
 
 _SHOWN = (1, 2, 4, 5)
 _ROUND_OFF = 1e-9
@@ -88,7 +87,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines += fade_lines(model, np.array([model.scene.speed]))
     outside = outside_at(model, balance)
     lines += [*judged.last, *(f"warning: {line}" for line in found.free), *outside]
-    lines += write(arguments, bounded(found.dataset, bands) if arguments.output else None, figure)
+    lines += write(arguments, (found.bounded() if bands else found.dataset) if arguments.output else None, figure)
     return "\n".join(lines), 1 if outside or judged.status else 0
 
 

@@ -15,11 +15,11 @@ from ehdmaps.arrays import IntArray
 from ehdmaps.units import DAMPER, FILM, PRESSURE, SPRING
 from mbs.scene.scene import Scene
 from mbs.settings import ROUND_OFF
-from mbs.unknowns.looks import Band, Term
 from mbs.unknowns.words import missing_words
 
 if TYPE_CHECKING:
     from mbs.linearised.modes import Modes
+    from mbs.unknowns.looks import Band, Term
     from mbs.unknowns.of_modes import ModeBands
 
 HEAD = "90 % of what is not known"
@@ -87,6 +87,7 @@ def term_words(terms: Sequence[Term]) -> str:
     Examples
     --------
     >>> none = np.zeros(1)
+    >>> from mbs.unknowns.looks import Term
     >>> term_words([Term(name, "clearance", none, none) for name in ("clearance of left", "clearance of right")])
     'clearance of left and right'
     """

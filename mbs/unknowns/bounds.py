@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from mbs.unknowns.looks import Band
 
 if TYPE_CHECKING:
@@ -30,14 +31,27 @@ def with_bounds(dataset: xr.Dataset, name: str, band: Band, places: Any = ...) -
     places : index
         Index of the values of the band among those of the variable.
     """
+    low, high = (np.full(dataset[name].shape, np.nan) for _ in SIDES)
+    low[places], high[places] = band.low, band.high
+    return with_sides(dataset, name, low, high)
+
+
+def with_sides(dataset: xr.Dataset, name: str, low: FloatArray, high: FloatArray) -> xr.Dataset:
+    """A data set with both bounds of a variable, of its dimensions, in its unit.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The data set.
+    name : str
+        The variable.
+    low, high : array
+        Bounds, of the shape of the variable; NaN where there is none.
+    """
     own = dataset[name]
-    for side, words in zip(SIDES, ("lower", "upper"), strict=True):
-        bounds = np.full(own.shape, np.nan)
-        bounds[places] = getattr(band, side)
-        attributes = {
-            "units": own.attrs["units"],
-            "long_name": f"{words} bound of 90 % of what is not known of the {own.attrs['long_name']}",
-        }
+    for side, words, bounds in zip(SIDES, ("lower", "upper"), (low, high), strict=True):
+        long = f"{words} bound of 90 % of what is not known of the {own.attrs['long_name']}"
+        attributes = {"units": own.attrs["units"], "long_name": long}
         dataset = dataset.assign({f"{name}_{side}": (own.dims, bounds, attributes)})
     return dataset
 

@@ -23,7 +23,8 @@ from mbs.cli import main
 from mbs.commands.cases import load_cases, read_compared, read_dry
 from mbs.output.model_text import heading
 from mbs.scene import choices
-from mbs.scene.choices import CHOICES, OPTIONS, VARIED, LawChoice, SceneChoice, Subject, combinations, named_law
+from mbs.scene.choices import CHOICES, OPTIONS, VARIED, LawChoice, SceneChoice, Subject, named_law
+from mbs.scene.combinations import combinations
 from mbs.scene.map_set import MapSet
 from mbs.scene.reader import parse_scene, read_scene
 from tests.cases.laws import dataset_of

@@ -22,6 +22,7 @@ from mbs.scene.reader import read_scene
 from mbs.settings import SweepRange
 from mbs.unknowns import held_open
 from mbs.unknowns.looks import Band, Term, band
+from mbs.unknowns.of_variables import variable_bands
 from mbs.unknowns.tolerances import Tolerance
 from mbs.unknowns.unknown import Unknown
 from tests.benchmarks import coverage
@@ -108,6 +109,19 @@ def test_less_that_is_open_is_never_a_wider_band():
     for left_out in range(len(every)):
         less = found(*every[:left_out], *every[left_out + 1 :], numerics=0.1)
         assert np.all(less.low >= whole.low) and np.all(less.high <= whole.high)
+
+
+def test_forces_may_change_their_sign_and_stiffnesses_do_not():
+    """A force of 100 N that one end turns to -200 N has that bound; a stiffness ends at nothing."""
+    centre = {"bearing_force": np.array([100.0]), "bearing_stiffness": np.diag(np.full(6, 100.0))}
+
+    def make(changed, standing):
+        return {name: values + changed.change * (values != 0.0) for name, values in centre.items()}
+
+    both = variable_bands(make, centre, [unknown("load", -300.0, 10.0)])
+    assert both["bearing_force"].low[0] == pytest.approx(-200.0)
+    assert both["bearing_force"].high[0] == pytest.approx(110.0)
+    assert both["bearing_stiffness"].low[0, 0] == 0.0 and both["bearing_stiffness"].high[0, 0] == pytest.approx(110.0)
 
 
 def test_damping_has_no_negative_bound():

@@ -5,15 +5,18 @@ These words are what scenes, jobs and map files keep of an estimate, see `ERRORS
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 _PERCENT = re.compile(r"(roller diameter|roller length|ball diameter|pitch diameter) (?:to )?(\d+) %")
+_RACEWAYS = re.compile(r"raceways to about (\d+) %")
+_ANGLE = re.compile(r"contact angle to ([\d.]+) deg")
 _GROOVES = re.compile(r"groove radii ([\d.]+) to ([\d.]+)")
 _COUNT = re.compile(r"number of (rollers|balls) \+-(\d+)")
 _EVEN = ("roller diameter",)
-"""Parts whose effect on stiffness and damping is even, to 2 %: one end tells the other."""
+"""Parts whose effect on stiffness and damping is even, to 2 %: one end tells the other; so are raceways and angles."""
 
 
 class Part(NamedTuple):
@@ -26,7 +29,7 @@ class Part(NamedTuple):
     held : str
         How far it may be off, such as "+-12 %".
     ends : tuple of dict
-        Fields of the geometry and their values at both ends [m], [1].
+        Fields of the geometry and their values at both ends [m], [rad], [1].
     even : bool
         Whether one end tells the other, with the opposite sign.
     """
@@ -51,9 +54,16 @@ def estimated_parts(geometry: Any, share: float = 1.0) -> Iterator[Part]:
     --------
     >>> from ehdmaps.physics.catalogue import estimate
     >>> [(part.name, part.held) for part in estimated_parts(estimate("NU206", 39e3))]
-    [('roller diameter', '+-12 %'), ('roller length', '+-6 %'), ('roller count', '13 +-1')]
+    [('raceways', '+-3 %'), ('roller diameter', '+-12 %'), ('roller length', '+-6 %'), ('roller count', '13 +-1')]
     """
     words: str = geometry.estimated or ""
+    if found := _RACEWAYS.search(words):
+        size = share * float(found[1]) / 100.0
+        yield Part("raceways", f"+-{100.0 * size:.3g} %", (_wider(geometry, size), _wider(geometry, -size)), True)
+    if found := _ANGLE.search(words):
+        angle = share * float(found[1])
+        ends = tuple({"contact_angle": geometry.contact_angle + math.radians(by)} for by in (angle, -angle))
+        yield Part("contact angle", f"+-{angle:.3g} deg", (ends[0], ends[1]), True)
     for name, percent in _PERCENT.findall(words):
         key, size = name.replace(" ", "_"), share * float(percent) / 100.0
         above, below = ({key: getattr(geometry, key) * (1.0 + sign * size)} for sign in (1.0, -1.0))
@@ -68,3 +78,11 @@ def estimated_parts(geometry: Any, share: float = 1.0) -> Iterator[Part]:
         key, most = found[1], int(found[2])
         count = getattr(geometry, key)
         yield Part(f"{key[:-1]} count", f"{count} +-{most}", ({key: count - most}, {key: count + most}))
+
+
+def _wider(geometry: Any, part: float) -> dict[str, float]:
+    """Both raceways wider by a part of the inner one, the gap between them as it is; or the pitch circle wider."""
+    if not hasattr(geometry, "inner_raceway_diameter"):
+        return {"pitch_diameter": geometry.pitch_diameter * (1.0 + part)}
+    inner, outer = geometry.inner_raceway_diameter, geometry.outer_raceway_diameter
+    return {"inner_raceway_diameter": inner * (1.0 + part), "outer_raceway_diameter": outer + inner * part}

@@ -15,6 +15,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import InputError
 from mbs import Scene, assemble
 from mbs.linearised.linear import frequency_response
 from mbs.linearised.modes import Modes, modes
@@ -67,9 +68,18 @@ def drawn(scene: Scene, random: np.random.Generator) -> Scene:
         dataclasses.replace(one, force=(1.0 + 0.2 * u()) * np.asarray(one.force)) if one.name == "preload" else one
         for one in scene.loads
     ]
-    elements = [_bearing(one, random) if hasattr(one, "geometry") else one for one in scene.elements]
+    elements = [_possible(one, random) if hasattr(one, "geometry") else one for one in scene.elements]
     kelvin = scene.temperature + 5.0 * u()
     return dataclasses.replace(scene, temperature=kelvin, lubricant=oil, loads=loads, elements=elements)
+
+
+def _possible(spec: Any, random: np.random.Generator) -> Any:
+    """A bearing that can be built: what overlaps on its pitch circle is drawn again."""
+    while True:
+        try:
+            return _bearing(spec, random)
+        except InputError:
+            continue
 
 
 def _bearing(spec: Any, random: np.random.Generator) -> Any:
@@ -79,11 +89,14 @@ def _bearing(spec: Any, random: np.random.Generator) -> Any:
     if rollers:
         low, high = UNSTATED[geometry.name]
         count = geometry.rollers + int(random.integers(-1, 2))
+        inner = geometry.inner_raceway_diameter * (1.0 + 0.03 * u())
         changed = dataclasses.replace(
             geometry,
             estimated=None,
             clearance_range=None,
             diametral_clearance=float(random.uniform(low, high)),
+            inner_raceway_diameter=inner,
+            outer_raceway_diameter=inner + geometry.outer_raceway_diameter - geometry.inner_raceway_diameter,
             roller_diameter=geometry.roller_diameter * (1.0 + 0.12 * u()),
             roller_length=geometry.roller_length * (1.0 + 0.20 * u()),
             rollers=count,
