@@ -24,7 +24,7 @@ from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.catalogue import designated
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.designations.reader import BALLS, plain_name
-from ehdmaps.physics.heat import heat_data
+from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, heat_data
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
@@ -43,8 +43,8 @@ LOADS, SPEEDS, TEMPERATURES = (100.0, 1e6), (0.05, 10.0), (293.15, 393.15)
 """Ranges of a law for which nothing else is said: those of the shipped jobs [N/m], [m/s], [K]."""
 
 _MOST_MADE = 8
-_made: dict[str, ContactLaw] = {}
-"""The last laws of this process by what was asked for: one that is asked for again shares its tables and films."""
+_made: dict[str, EHDMap] = {}
+"""The last maps of this process by what was asked for, with the laws that were made of them."""
 
 _POINTS = (25, 12, 6)
 """Loads, speeds and temperatures of a map in memory: for its error estimates, as laws read the film table."""
@@ -70,6 +70,7 @@ class ReadMap(EHDMap):
         self.supply, self.surface = job.supply or FLOODED, job.surface or SMOOTH
         self.solver = solver.name
         self.inlet_heat = solver.inlet_heat
+        self.physics = INLET_HEAT if solver.inlet_heat else ISOTHERMAL
 
     def __getstate__(self) -> dict[str, Any]:
         """For other processes, which make again what follows from the job."""
@@ -117,6 +118,7 @@ def table_map(
     """Make a map in memory, in about a second, with few points: it is there for its laws.
 
     Films come from the film table; where it does not serve, all are solved. The laws are not checked by fresh solves.
+    What was made is kept: the same map, with its laws, is a moment's work when it is asked for again.
 
     Parameters
     ----------
@@ -152,6 +154,10 @@ def table_map(
         every = tuple(np.linspace(*TEMPERATURES, _POINTS[2]).tolist())
         known = served(lubricant, every, contacts, entrainment_speeds[1])
         temperatures = known[0], known[-1]
+    asked = of, lubricant, loads, entrainment_speeds, temperatures, structural_law, material, supply, surface, inlet_heat
+    key = key_of(*asked) if keeping() and solver is None else ""
+    if key in _made:
+        return _made[key]
     job = Job.build(
         lubricant=lubricant,
         loads=np.geomspace(*loads, _POINTS[0]),
@@ -176,11 +182,17 @@ def table_map(
                 'make a map, by `ehdmaps generate` with physics = "inlet-heat" in [solver] of the job'
             )
     if isinstance(chosen, TableSolver) and not why:
-        return ReadMap(job, replace(chosen, inlet_heat=inlet_heat))
-    from ehdmaps.jobs.make.generate import generate_in_memory  # with all that solves and writes a map
+        made: EHDMap = ReadMap(job, replace(chosen, inlet_heat=inlet_heat))
+    else:
+        from ehdmaps.jobs.make.generate import generate_in_memory  # with all that solves and writes a map
 
-    made = generate_in_memory(job, workers=1, solver=chosen)
-    return EHDMap(made.dataset, made.backbone)
+        solved = generate_in_memory(job, workers=1, solver=chosen)
+        made = EHDMap(solved.dataset, solved.backbone)
+    if key:
+        while len(_made) >= _MOST_MADE:
+            _made.pop(next(iter(_made)))
+        _made[key] = made
+    return made
 
 
 def _points(ends: tuple[float, float], most: int) -> int:
@@ -279,10 +291,6 @@ def law(
     chosen = kind or allowed[0]
     if chosen not in allowed:
         raise InputError(f"contact law, kind: got {kind!r}; allowed: {', '.join(allowed)}")
-    asked = of, lubricant, chosen, loads, entrainment_speeds, temperatures, outside, supply, surface, structural_law
-    key = key_of(*asked, material) if keeping() and solver is None else ""
-    if key in _made:
-        return _made[key].again()
     emap = table_map(
         of,
         lubricant,
@@ -293,9 +301,4 @@ def law(
         material=material,
         solver=solver,
     )
-    made = emap.law(chosen, outside, supply=supply, surface=surface)
-    if key:
-        while len(_made) >= _MOST_MADE:
-            _made.pop(next(iter(_made)))
-        _made[key] = made.again()
-    return made
+    return emap.law(chosen, outside, supply=supply, surface=surface)
