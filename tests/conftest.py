@@ -59,6 +59,23 @@ def pytest_collection_finish() -> None:
     gc.set_threshold(20_000, 20, 20)
 
 
+class Doctests:
+    """Looks for doctests only in modules whose text has some.
+
+    To import all others takes each process that runs tests 20 s.
+    """
+
+    @pytest.hookimpl(hookwrapper=True)
+    def pytest_collect_file(self, file_path: Path) -> Iterator[None]:
+        outcome = yield
+        if file_path.suffix == ".py" and b">>> " not in file_path.read_bytes():
+            outcome.force_result([one for one in outcome.get_result() if type(one) is pytest.Module])
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    config.pluginmanager.register(Doctests())
+
+
 LONG = ("slow", "openfoam")
 """Marks of the tests of the long tier, which run with ``--all``."""
 

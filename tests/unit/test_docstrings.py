@@ -93,27 +93,32 @@ def texts(tree: ast.Module) -> list[Text]:
     return [Text(getattr(node, "lineno", 1), getattr(node, "name", ""), ast.get_docstring(node) or "") for node in held]
 
 
-TREES = ((path, ast.parse(path.read_text(encoding="utf-8"))) for path in FILES)
-LOOKED_AT = [(path, list(functions(tree, path.relative_to(ROOT).as_posix())), texts(tree)) for path, tree in TREES]
-"""Public functions and docstrings of each file, of one look."""
+@pytest.fixture(scope="module")
+def looked_at() -> list[tuple[Path, list[Documented], list[Text]]]:
+    """Public functions and docstrings of each file, of one look."""
+    trees = ((path, ast.parse(path.read_text(encoding="utf-8"))) for path in FILES)
+    return [(path, list(functions(tree, path.relative_to(ROOT).as_posix())), texts(tree)) for path, tree in trees]
 
-PUBLIC = [function for _, found, _ in LOOKED_AT for function in found]
+
+@pytest.fixture(scope="module")
+def public(looked_at) -> list[Documented]:
+    return [function for _, found, _ in looked_at for function in found]
 
 
-def test_documented_parameters_are_those_of_the_signature_in_its_order():
+def test_documented_parameters_are_those_of_the_signature_in_its_order(public):
     wrong = [
         f"{one.where} {one.name}: documents {one.named}, takes {one.arguments}"
-        for one in PUBLIC
+        for one in public
         if one.named is not None and one.named != one.arguments
     ]
     assert not wrong, "\n".join(wrong)
 
 
-def test_functions_of_many_arguments_document_them():
-    full = {part for one in PUBLIC if one.named is not None for part in (one.name, one.name.rpartition(".")[2])}
+def test_functions_of_many_arguments_document_them(public):
+    full = {part for one in public if one.named is not None for part in (one.name, one.name.rpartition(".")[2])}
     bare = [
         f"{one.where} {one.name}{one.arguments}"
-        for one in PUBLIC
+        for one in public
         if one.named is None and len(one.arguments) >= MANY and not full & set(REFERENCE.findall(one.text))
     ]
     assert len(bare) <= LEFT, "without a section Parameters:\n" + "\n".join(bare)
@@ -139,9 +144,9 @@ def nameless(path: Path, held: list[Text]) -> list[str]:
     ]
 
 
-def test_descriptions_have_a_noun():
+def test_descriptions_have_a_noun(looked_at):
     found: dict[str, list[str]] = {}
-    for path, _, held in LOOKED_AT:
+    for path, _, held in looked_at:
         found.setdefault("/".join(path.relative_to(ROOT).parts[:2]), []).extend(nameless(path, held))
     wrong = [line for package, lines in found.items() if len(lines) > STILL.get(package, 0) for line in lines]
     assert not wrong, "a description needs a noun ('Load of the roller', not 'Of the roller'):\n" + "\n".join(wrong)
@@ -150,11 +155,11 @@ def test_descriptions_have_a_noun():
 QUESTION = re.compile(r"(?:What|Whether|How|Where|Which|Why|When|Of)\b")
 
 
-def test_docstrings_begin_with_a_noun_or_a_verb():
+def test_docstrings_begin_with_a_noun_or_a_verb(looked_at):
     """'Share of the load', 'Tell whether it touches': not 'What it carries', 'Whether it touches'."""
     wrong = [
         f"{path.relative_to(ROOT).as_posix()}: {one.text.splitlines()[0]}"
-        for path, _, held in LOOKED_AT
+        for path, _, held in looked_at
         for one in held
         if QUESTION.match(one.text)
     ]
