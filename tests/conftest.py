@@ -1,6 +1,7 @@
 """Settings of all tests, maps that several of them read, and the report of those that take long unmarked."""
 
 import collections
+import fcntl
 import gc
 import os
 import tempfile
@@ -20,19 +21,20 @@ settings.register_profile("developer", deadline=None)
 settings.load_profile("ci" if os.environ.get("CI") else "developer")
 
 
-@pytest.fixture(scope="session", autouse=True)
-def own_reductions() -> Iterator[None]:
-    """Keep reductions and tables of laws out of the user's folder, in programs that tests start too."""
-    with tempfile.TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
-        patch.setenv("EHDMAPS_REDUCED", folder)
-        patch.setenv("EHDMAPS_LAW_TABLES", "off")  # laws are made anew, whatever a test has changed of how
-        yield
+SHARED = "EHDMAPS_TESTS"
+"""Environment variable that names the folder of what tests share, with those of other processes and their programs."""
 
 
-@pytest.fixture(scope="session")
-def law_tables(tmp_path_factory: pytest.TempPathFactory) -> str:
-    """Folder for tables of laws that commands share, as those of a user do."""
-    return str(tmp_path_factory.mktemp("laws"))
+def share(config: pytest.Config) -> None:
+    """Keep reductions, tables of laws and maps out of the user's folder, each made once for all processes."""
+    if hasattr(config, "workerinput"):  # one of several processes: it has the folder from that which started it
+        return
+    folder, patch = tempfile.TemporaryDirectory(), pytest.MonkeyPatch()
+    patch.setenv(SHARED, folder.name)
+    patch.setenv("EHDMAPS_REDUCED", str(Path(folder.name) / "reduced"))
+    patch.setenv("EHDMAPS_LAW_TABLES", str(Path(folder.name) / "laws"))
+    config.add_cleanup(folder.cleanup)
+    config.add_cleanup(patch.undo)
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -74,6 +76,7 @@ class Doctests:
 
 def pytest_configure(config: pytest.Config) -> None:
     config.pluginmanager.register(Doctests())
+    share(config)
 
 
 LONG = ("slow", "openfoam")
@@ -171,22 +174,26 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     terminalreporter.write_line(", ".join(f"{name} {seconds:.0f} s" for name, seconds in FILES.most_common(LISTED)))
 
 
-def made_map(folder: Path, text: str, statuses: tuple[int, ...] = (0,)) -> str:
-    """Make the map of a job in a folder; status 1 is a point without a solution."""
+def made_map(name: str, text: str, statuses: tuple[int, ...] = (0,)) -> str:
+    """Make the map of a job, once for all processes; status 1 is a point without a solution."""
     from ehdmaps.jobs import cli
 
-    (folder / "job.toml").write_text(text)
-    path = str(folder / "map.nc")
-    assert cli.main(["generate", str(folder / "job.toml"), "-o", path, "--workers", "1"]) in statuses
-    return path
+    folder = Path(os.environ[SHARED]) / name
+    folder.mkdir(exist_ok=True)
+    path = folder / "map.nc"
+    with (folder / "lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not path.exists():
+            (folder / "job.toml").write_text(text)
+            assert cli.main(["generate", str(folder / "job.toml"), "-o", str(path), "--workers", "1"]) in statuses
+    return str(path)
 
 
 @pytest.fixture(scope="session")
-def formula_maps(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+def formula_maps() -> dict[str, str]:
     """Files of small maps by the film formula, by the name of the bearing."""
     return {
-        name: made_map(tmp_path_factory.mktemp(name), map_job(*WIDE_AXES, bearing=name), statuses=(0, 1))
-        for name in ("NU308", "N1014")
+        name: made_map(name, map_job(*WIDE_AXES, bearing=name), statuses=(0, 1)) for name in ("NU308", "N1014")
     }
 
 
@@ -197,18 +204,18 @@ def formula_map(formula_maps: dict[str, str]) -> str:
 
 
 @pytest.fixture(scope="session")
-def small_map(tmp_path_factory: pytest.TempPathFactory) -> str:
+def small_map() -> str:
     """File of a map of NU308 by the film formula whose laws have small tables."""
-    return made_map(tmp_path_factory.mktemp("small"), SMALL, statuses=(0, 1))
+    return made_map("small", SMALL, statuses=(0, 1))
 
 
 @pytest.fixture(scope="session")
-def reynolds_map(tmp_path_factory: pytest.TempPathFactory) -> str:
+def reynolds_map() -> str:
     """File of a map of NU308 by the Reynolds equation, which takes some seconds of processor time."""
-    return made_map(tmp_path_factory.mktemp("reynolds"), FINE)
+    return made_map("reynolds", FINE)
 
 
 @pytest.fixture(scope="session")
-def solved_map(tmp_path_factory: pytest.TempPathFactory) -> str:
+def solved_map() -> str:
     """The same with all films solved, and with refinement lines."""
-    return made_map(tmp_path_factory.mktemp("solved"), f'{FINE}films = "solved"\n')
+    return made_map("solved", f'{FINE}films = "solved"\n')

@@ -6,12 +6,6 @@ import pytest
 
 
 @pytest.fixture(autouse=True)
-def kept_laws(law_tables, monkeypatch):
-    """Commands find the tables of laws that earlier ones have made."""
-    monkeypatch.setenv("EHDMAPS_LAW_TABLES", law_tables)
-
-
-@pytest.fixture(autouse=True)
 def cell(request, record_property):
     """The machine is the row, the other parameters, or the name of the test, the column."""
     given = dict(request.node.callspec.params) if hasattr(request.node, "callspec") else {}

@@ -25,12 +25,10 @@ parabolas in place of the cubics of their tables, 1e-5."""
 
 
 @pytest.fixture(scope="module", params=LAWS)
-def runs(request, law_tables):
+def runs(request):
     """The machine of all kinds, pushed by 8 um so that contacts part, in compiled code and in Python."""
     law, within = LAWS[request.param]
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("EHDMAPS_LAW_TABLES", law_tables)
-        model = assemble(parse_scene(TEXT, "machine", "machine.toml"), law)
+    model = assemble(parse_scene(TEXT, "machine", "machine.toml"), law)
     start = equilibrium(model.system, model.operation).displacement.copy()
     start[[model.system.coordinates.index(f"rotor.{way}") for way in "xy"]] += 8e-6
     course, settings = SpeedProfile.ramp(150.0, 160.0, STEPS * STEP), Settings(step=STEP, sample=STEP)

@@ -90,28 +90,28 @@ def test_a_dry_map_needs_no_films():
     assert EHDMap(dry_dataset()).reach().whole
 
 
+WITHIN = {"load": slice(4, LOST), "entrainment_speed": slice(1, None), "temperature": slice(None, 3)}
+"""Places of a map that is known away from the edges of each axis."""
+
+
 @pytest.mark.parametrize(
-    ("more", "cut"),
+    ("kind", "outside", "more", "cut"),
     [
-        ({}, {"load": slice(None, LOST)}),
-        ({}, {"load": slice(4, None)}),
-        ({}, {"entrainment_speed": slice(1, None)}),
-        ({}, {"temperature": slice(None, 3)}),
-        ({"supply": OilSupply(2e-6)}, {"load": slice(None, LOST)}),
-        ({"surface": Surface(roughness=3e-7)}, {"load": slice(None, LOST)}),
+        *(("inner", "clamp", {}, {axis: places}) for axis, places in WITHIN.items()),
+        ("series", "asymptote", {}, WITHIN),
+        ("inner", "clamp", {"supply": OilSupply(2e-6)}, {"load": slice(None, LOST)}),
+        ("inner", "clamp", {"surface": Surface(roughness=3e-7)}, {"load": slice(None, LOST)}),
     ],
-    ids=["loads", "light loads", "speeds", "temperatures", "on a layer", "rough"],
+    ids=["loads", "speeds", "temperatures", "all axes", "on a layer", "rough"],
 )
-@pytest.mark.parametrize(("kind", "outside"), [("inner", "clamp"), ("series", "asymptote")])
-def test_a_law_is_that_of_a_map_whose_axes_end_at_the_reach(whole, more, cut, kind, outside):
+def test_a_law_is_that_of_a_map_whose_axes_end_at_the_reach(whole, kind, outside, more, cut):
     """Within the reach and beyond it, to the round-off of splines over another number of nodes."""
     ended = whole.dataset.isel(cut)
-    ((name, _),) = cut.items()
-    order = ("contact", "load", "entrainment_speed", "temperature")
-    shape = [-1 if one == name else 1 for one in order]
-    lost = np.broadcast_to(
-        ~np.isin(whole.dataset[name].values, ended[name].values).reshape(shape), whole.dataset["status"].shape
-    )
+    lost = np.zeros(whole.dataset["status"].shape, bool)
+    for place, name in enumerate(("contact", "load", "entrainment_speed", "temperature")):
+        if name in cut:
+            shape = [-1 if one == place else 1 for one in range(4)]
+            lost |= ~np.isin(whole.dataset[name].values, ended[name].values).reshape(shape)
     holey = with_holes(whole.dataset, lost)
     laws = [EHDMap(one).law(kind, outside, **more) for one in (holey, ended.drop_vars(list(DERIVED), errors="ignore"))]
     assert (laws[0].load_range, laws[0].speed_range) == (laws[1].load_range, laws[1].speed_range)
