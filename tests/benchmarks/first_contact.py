@@ -45,7 +45,8 @@ def spent(command: list[str], folder: Path, tree: Path) -> float:
     caches = {"XDG_CACHE_HOME": str(folder / "caches"), "NUMBA_CACHE_DIR": str(folder / "numba")}
     environment = os.environ | caches | {"PYTHONPATH": str(tree)}
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    done = subprocess.run([sys.executable, *command], cwd=folder, env=environment, capture_output=True, text=True)
+    call = [sys.executable, *command]
+    done = subprocess.run(call, check=False, cwd=folder, env=environment, capture_output=True, text=True)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     if done.returncode:
         raise SystemExit(f"{command} ended with {done.returncode}:\n{done.stdout[-2000:]}{done.stderr[-2000:]}")

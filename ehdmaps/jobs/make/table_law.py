@@ -154,7 +154,8 @@ def table_map(
         every = tuple(np.linspace(*TEMPERATURES, _POINTS[2]).tolist())
         known = served(lubricant, every, contacts, entrainment_speeds[1])
         temperatures = known[0], known[-1]
-    asked = of, lubricant, loads, entrainment_speeds, temperatures, structural_law, material, supply, surface, inlet_heat
+    ranges, solids = (loads, entrainment_speeds, temperatures), (structural_law, material)
+    asked = of, lubricant, *ranges, *solids, supply, surface, inlet_heat
     key = key_of(*asked) if keeping() and solver is None else ""
     if key in _made:
         return _made[key]
