@@ -17,6 +17,7 @@ table_field    the film field of the film table
 rolling_film   rolling force and mass flow of each contact at any load, speed and temperature
 contact_curve  approach and damping of one contact over load, with the film below the lowest known load
 oil_layer      the film of a contact on an oil layer, from that of the flooded one
+points         the room of films of points on layers and between rough surfaces
 rough_layer    asperities, and the load that they share with the film
 compilation    curves -> table over approach, speed and temperature
 kernels        the room of these tables and of the C that reads them, at one point or many; films with memory

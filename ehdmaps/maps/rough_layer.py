@@ -162,7 +162,9 @@ TEMPERATURE_REACH = 40.0
 """How far films go on beyond the temperatures of a map with the policy `asymptote`, at most [K]."""
 
 _FARTHEST, _DEEPEST = 14.0, -35.0
-_STEP = 0.02
+LOG_STEP = 0.02
+"""Step of the tables of asperities in ln of their pressure."""
+
 _THICK = 8.0
 _LEAST_OIL_NUMBER = 1e-6
 _LEAST_SHARE = 1e-3
@@ -204,7 +206,7 @@ def asperities_of(surface: Surface, reduced_modulus: float) -> Asperities:
     pressure, _ = asperity_pressure(surface, x, reduced_modulus)
     gap, _ = mean_gap(x)
     logs = np.log(pressure)
-    even = np.arange(logs[0], logs[-1], _STEP)
+    even = np.arange(logs[0], logs[-1], LOG_STEP)
     distance = CubicSpline(logs, x)(even)
     at_even, by_distance = asperity_pressure(surface, distance, reduced_modulus)
     # one Newton step takes the distance to the pressure itself
@@ -240,7 +242,7 @@ class RoughRecord(Record):
         """
         arrays = {name: np.ascontiguousarray(value) for name, value in asperities._asdict().items() if name != "start"}
         return cls(
-            nodes=asperities.distance.size, start=asperities.start, step=_STEP, **arrays,
+            nodes=asperities.distance.size, start=asperities.start, step=LOG_STEP, **arrays,
             sigma=sigma, thick=_THICK, oil_exponent=OIL_EXPONENT, full_from=FULL_FROM,
         )  # fmt: skip
 

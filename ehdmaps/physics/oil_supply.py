@@ -44,6 +44,7 @@ from numpy.polynomial.chebyshev import chebder, chebfit, chebval
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
+from ehdmaps.physics.surface import SMOOTH, Surface
 
 LAYERS: Mapping[str, float] = MappingProxyType(
     {"flooded": math.inf, "oil bath": 10e-6, "oil air": 2e-6, "grease": 0.7e-6}
@@ -121,6 +122,48 @@ class OilSupply:
 
 FLOODED = OilSupply(math.inf, "flooded")
 """Contacts that take all the oil that they need."""
+
+
+@dataclass(frozen=True)
+class FilmConditions:
+    """Conditions of the films of a bearing, points and lines alike.
+
+    They act in this order: heat thins the flooded film, the layer caps what is left, asperities share its load.
+
+    Attributes
+    ----------
+    inlet_heat : bool
+        Whether heat in the inlet thins the films, by its rule (`ehdmaps.physics.heat`).
+    supply : OilSupply
+        Oil before each contact.
+    surface : Surface
+        Surfaces of the contacts.
+
+    Examples
+    --------
+    >>> FilmConditions(True, OilSupply(2e-6)).words
+    'inlet heat, oil layer 2 um'
+    """
+
+    inlet_heat: bool = False
+    supply: OilSupply = FLOODED
+    surface: Surface = SMOOTH
+
+    @property
+    def plain(self) -> bool:
+        """True of flooded contacts between smooth surfaces."""
+        return self.supply.flooded and self.surface.smooth
+
+    @property
+    def words(self) -> str:
+        """The conditions for people; smooth surfaces are not told."""
+        heat = "inlet heat" if self.inlet_heat else "isothermal"
+        rough = "" if self.surface.smooth else f", {self.surface.label}"
+        return f"{heat}, {self.supply.label}{rough}"
+
+
+PLAIN = FilmConditions()
+"""Isothermal, flooded films between smooth surfaces."""
 
 
 RIGID_FLOW = 1.2257484409676

@@ -115,25 +115,21 @@ class Subject:
         return dataclasses.replace(model, chosen=self.chosen)
 
 
-Concerned = Literal["all", "films", "relaxing", "heat", "maps", "oil", "first"]
-"""Whom a choice concerns: all; laws with films of rollers, with films that may relax, of maps or the film table, or of
+Concerned = Literal["all", "relaxing", "heat", "maps", "oil", "first"]
+"""Whom a choice concerns: all; laws with films, of maps or the film table, or of
 maps; those for which oil has a temperature; the reference."""
 
 _NO_MAP = "without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`, or --law table"
 
 LACKS = {
-    "films": "without a law that has films; allowed: with --map, --law table or formula",
     "relaxing": "without a law that has films; allowed: with --map, --law table or formula",
     "heat": _NO_MAP,
     "maps": _NO_MAP,
 }
 """What is said where no law is concerned."""
 
-TAPERED_LACK = "with tapered or ribbed rollers alone; allowed: [supply] and [surface] of the scene; films are slow ones"
-"""The same of films of tapered rollers."""
-
-BALLS_LACK = "with ball bearings alone; allowed: none of it: their films are of one oil, flooded"
-"""What is said of the same where balls have films."""
+LOCATED_LACK = "without roller bearings like NU; allowed: none of it, balls and tapered rollers have one law of solids"
+"""The same of a scene of bearings that carry axial load alone."""
 
 
 @dataclass(frozen=True)
@@ -144,7 +140,7 @@ class SceneChoice(Choice[Subject]):
     ----------
     example : str
         A value that may be varied, for people; empty where it cannot be.
-    concerned : {"all", "films", "relaxing", "heat", "maps", "oil", "first"}
+    concerned : {"all", "relaxing", "heat", "maps", "oil", "first"}
         Which of several laws it concerns.
     option : bool
         Whether the commands on scenes have it as an option; else `mbs variants --vary` alone.
@@ -175,7 +171,7 @@ class SceneChoice(Choice[Subject]):
             return subject.law.has_films or any(entry.changes_in_operation for entry in subject.scene.bearings)
         if self.concerned == "relaxing":
             return subject.law.may_relax
-        return self.concerned != "films" or subject.law.has_films
+        return True
 
     def chosen(self, subject: Subject, value: Any) -> Subject:
         """A subject with a value, which its results tell.
@@ -426,7 +422,7 @@ def _films_words(kind: str) -> str:
 def _with_supply(subject: Subject, supply: OilSupply) -> Subject:
     """A subject with another oil supply of all bearings; a law without films stays as it is."""
     law = subject.law
-    return dataclasses.replace(subject, law=dataclasses.replace(law, supply=supply)) if law.has_films else subject
+    return dataclasses.replace(subject, law=dataclasses.replace(law, supply=supply)) if law.may_relax else subject
 
 
 def _with_roughness(subject: Subject, surface: Surface) -> Subject:
@@ -553,7 +549,7 @@ _ROWS = (
         _with_supply,
         SUPPLY.text,
         example="oil air",
-        concerned="films",
+        concerned="relaxing",
         usual=lambda supply: bool(supply.flooded),
     ),
     SceneChoice(
@@ -565,7 +561,7 @@ _ROWS = (
         _with_roughness,
         ROUGHNESS.text,
         example="0.2 um",
-        concerned="films",
+        concerned="relaxing",
     ),
     SceneChoice(
         "temperature",

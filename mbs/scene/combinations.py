@@ -9,7 +9,7 @@ from typing import Any
 
 from ehdmaps.choices import SUPPLY
 from ehdmaps.errors import InputError
-from mbs.scene.choices import BALLS_LACK, CHOICES, LACKS, LAWS, TAPERED_LACK, SceneChoice, Subject
+from mbs.scene.choices import CHOICES, LACKS, LAWS, LOCATED_LACK, SceneChoice, Subject
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,10 +54,8 @@ def combinations(
             continue
         if choice.concerned in LACKS and not any(choice.concerns(one.subject) for one in found):
             got, scene = ", ".join(map(choice.text, several)), found[0].subject.scene
-            of_others = not scene.bearings and choice.concerned not in ("relaxing", "heat")
-            lacks = LACKS[choice.concerned]
-            if of_others and scene.located:
-                lacks = BALLS_LACK if scene.has_points else TAPERED_LACK
+            of_others = not scene.bearings and scene.located and choice.concerned not in ("relaxing", "heat")
+            lacks = LOCATED_LACK if of_others else LACKS[choice.concerned]
             problems.append(f"--{choice.name}: got {got} {lacks}")
             continue
         found = [entry for one in found for entry in _each(one, choice, several, problems)]

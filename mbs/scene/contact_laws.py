@@ -16,7 +16,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.inputs import decimal_points, read_text, separator
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.oil_supply import FLOODED, OilSupply
+from ehdmaps.physics.oil_supply import FLOODED, FilmConditions, OilSupply
 from ehdmaps.physics.solids import Material
 from ehdmaps.physics.surface import SMOOTH, Surface
 from ehdmaps.units import DAMPER, SPRING, closest, quantity
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from ehdmaps.maps.law import ContactLaw, LawKind
     from mbs.scene.map_set import MapSet
     from mbs.scene.scene import Scene
-    from mbs.scene.specs import BearingSpec
+    from mbs.scene.specs import BearingSpec, LocatingSpec
 
 
 _LONGEST, _MOST = 1_000_000, 10_000
@@ -406,8 +406,20 @@ class ContactLaws:
 
     @property
     def supplies(self) -> dict[str, OilSupply]:
-        """The oil supply of each bearing by its name; none for laws without films."""
-        return {spec.name: self.supply(spec) for spec in self.scene.bearings} if self._has_films else {}
+        """The oil supply of each bearing by its name; none of bearings without films."""
+        rollers = {spec.name: self.supply(spec) for spec in self.scene.bearings} if self._has_films else {}
+        located = {spec.name: self.conditions.supply for spec in self.scene.located if self.films_of(spec)}
+        return rollers | located
+
+    def films_of(self, spec: LocatingSpec) -> bool:
+        """Tell whether a bearing that carries axial load has films."""
+        return self.chosen in (TABLE_LAW, "map") or (self.chosen == "formula" and not spec.of_points)
+
+    @property
+    def conditions(self) -> FilmConditions:
+        """Conditions of the films of bearings that carry axial load."""
+        supply, surface = self.asked_supply or self.scene.supply, self.surface or self.scene.surface
+        return FilmConditions(self.inlet_heat, supply or FLOODED, surface or SMOOTH)
 
     @property
     def oils(self) -> dict[str, Lubricant]:
@@ -431,7 +443,7 @@ class ContactLaws:
     def surface(self) -> Surface | None:
         """Surfaces of all contacts: those of the scene go before those of the map; None for laws without films."""
         if not self._has_films:
-            return None
+            return self.scene.surface if self.chosen == TABLE_LAW else None
         maps = self._maps_in_force
         return self.scene.surface or (SMOOTH if maps is None else maps.maps[0].surface)
 

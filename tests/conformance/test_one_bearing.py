@@ -90,10 +90,11 @@ def test_heat_in_the_inlet_thins_films_of_every_kind(name, capsys, tmp_path, mon
 
 
 @pytest.mark.slow
-def test_rollers_between_ribs_take_an_oil_layer(capsys, tmp_path, monkeypatch):
+@pytest.mark.parametrize("name", ["6208", "32208"])
+def test_bearings_with_axial_load_take_an_oil_layer(name, capsys, tmp_path, monkeypatch):
     """A thick one is flooded, to what the cap of the films lets through; a thin one leaves less to damp."""
     monkeypatch.chdir(tmp_path)
-    ask = ("32208", "--load", "2 kN", "--axial", "2 kN", "--speed", "3000 rpm", "-o", "a.nc")
+    ask = (name, "--load", "2 kN", "--axial", "2 kN", "--speed", "3000 rpm", "-o", "a.nc")
     found = {}
     for supply in ("flooded", "1 mm", "1 um"):
         status, page, err = run(capsys, "bearing", *ask, "--supply", supply)
@@ -101,6 +102,8 @@ def test_rollers_between_ribs_take_an_oil_layer(capsys, tmp_path, monkeypatch):
         with xr.open_dataset("a.nc") as data:
             found[supply] = [float(data[name][0, 0]) for name in ("stiffness_along", "damping_along")]
     assert found["1 mm"] == pytest.approx(found["flooded"], rel=1e-3)
-    assert found["1 um"][1] < 0.95 * found["flooded"][1] and "oil layer 1 um, rib dry" in page
+    # points keep the damping of their flooded films, and balls move to other loads and angles
+    assert found["1 um"] != pytest.approx(found["flooded"], rel=1e-4) and "oil layer 1 um" in page
+    assert name == "6208" or found["1 um"][1] < 0.95 * found["flooded"][1]
     status, _, err = run(capsys, "bearing", *ask, "--law", "hertz", "--supply", "1 um")
     assert status == 2 and "--supply: got oil layer 1 um with dry contacts; allowed: with --law table" in err

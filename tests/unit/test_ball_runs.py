@@ -202,7 +202,8 @@ def test_balls_are_in_results_and_pictures():
     [
         (("statics", "--law", "hertz", "--physics", "inlet-heat"), "--physics: got inlet-heat without a map; allowed"),
         (("modes", "--law", "hertz", "--films", "memory"), "without a law that has films; allowed: with --map, --law"),
-        (("statics", "--supply", "5 um"), "with ball bearings alone; allowed: none of it: their films are of one oil"),
+        (("statics", "--supply", "5 um", "--law", "hertz"), "without a law that has films; allowed: with --map, --law"),
+        (("statics", "--structural-law", "fe"), "without roller bearings like NU; allowed: none of it, balls and"),
     ],
 )
 def test_what_balls_do_not_take_says_what_does(capsys, words, said):

@@ -52,6 +52,23 @@ def equal_line(ellipse: Ellipse, load_number: FloatArray) -> FloatArray:
     return np.asarray(2.0 * np.pi * (0.5 * g) ** 2 * q ** (2.0 / 3.0))
 
 
+def line_number(
+    ellipse: Ellipse, viscosity: FloatArray | float, load: FloatArray, speed: FloatArray | float
+) -> FloatArray:
+    """Load number of the equal line.
+
+    Parameters
+    ----------
+    ellipse : Ellipse
+        The contact.
+    viscosity, load, speed : ndarray
+        eta0 [Pa s], F [N] > 0, u [m/s] > 0.
+    """
+    modulus, radius = ellipse.reduced_modulus, ellipse.rolling_radius
+    number = 2.0 * viscosity * speed / (modulus * radius)
+    return equal_line(ellipse, load / (modulus * radius**2) * number**-0.75)
+
+
 def point_heats(
     ellipse: Ellipse, lubricant: Lubricant, load: FloatArray, speed: FloatArray, temperature: FloatArray
 ) -> InletHeat:
@@ -76,9 +93,7 @@ def point_heats(
     loading, viscosity = heat_loading(lubricant, speed, temperature), np.empty(load.shape)
     for kelvin in np.unique(temperature).tolist():
         viscosity[temperature == kelvin] = lubricant.at(kelvin).viscosity
-    modulus, radius = ellipse.reduced_modulus, ellipse.rolling_radius
-    number = 2.0 * viscosity * speed / (modulus * radius)
-    M = equal_line(ellipse, load / (modulus * radius**2) * number**-0.75)
+    M = line_number(ellipse, viscosity, load, speed)
     factor = inlet_heat_factor(M, loading)
     unknown = (loading > LARGEST_LOADING) | (ellipse.ellipticity < ROUNDEST)
     return heat_by_factor(M, factor, load, unknown, M < LIGHTEST_LINE, 2.0 / 3.0, LOSS, OFFSET)

@@ -2,7 +2,9 @@
 
 The table is read at its own loads; where it has too few, a contact is solved by `ehdmaps.point.solver` at loads that
 are evenly spaced in the logarithm. Between loads film offset, damping and films are cubics in the logarithms of value
-and load, which at the table's loads are the table's own; beyond the loads that have a film they go on straight.
+and load, which at the table's loads are the table's own; beyond the loads that have a film they go on straight. On an
+oil layer and between rough surfaces these are what `ehdmaps.maps.points.layers` begins with; the offset is then a cubic
+itself, as it may be below zero.
 Stiffness comes from the slope of the film offset, which is smoother than the tangents of single solutions. A load that
 has no film is left out where its neighbours have one on both sides, and the loads end there else.
 """
@@ -14,7 +16,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline, PPoly
@@ -24,6 +26,7 @@ from ehdmaps.errors import SolverError
 from ehdmaps.maps.kernels.tables import film_part
 from ehdmaps.physics.hertz import POINT_LIMIT
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import PLAIN, FilmConditions
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.solids import STEEL, Material
@@ -32,6 +35,9 @@ from ehdmaps.table.points.films import PointFilms
 from ehdmaps.units import written
 from mbs.bearings.balls.laws import BallLaw, film_normal_law
 from mbs.bearings.balls.response import ContactResponse
+
+if TYPE_CHECKING:
+    from ehdmaps.maps.points.layers import LayeredFilms, PointPlace
 
 LOADS_PER_DECADE = 3
 FEWEST = 4
@@ -65,6 +71,8 @@ class ContactFilms:
         How many loads were read from the table, all or none.
     response : ContactResponse or None
         Response over frequency; None of films that were solved.
+    layered : LayeredFilms or None
+        What oil supply and surfaces make of the values; None of flooded films of smooth surfaces.
     """
 
     loads: FloatArray
@@ -73,6 +81,7 @@ class ContactFilms:
     left_out: tuple[str, ...]
     read_loads: int = 0
     response: ContactResponse | None = None
+    layered: LayeredFilms | None = None
 
     def read(self, load: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Values at loads (k,) and their slopes by ln load, each (4, k).
@@ -86,15 +95,44 @@ class ContactFilms:
         asked = np.log(load)
         inside = np.clip(asked, spline.x[0], spline.x[-1])
         slopes = slope(inside)
-        values = np.exp(spline(inside) + slopes * (asked - inside)[:, None])
+        values = spline(inside) + slopes * (asked - inside)[:, None]
+        logs = slice(0 if self.layered is None else 1, None)
+        values[:, logs] = np.exp(values[:, logs])
+        slopes[:, logs] *= values[:, logs]
         values[:, 2] = np.minimum(values[:, 2], values[:, 1])  # cubics and straight ends may cross
-        return values.T, (values * slopes).T
+        return values.T, slopes.T
 
     @cached_property
     def _splines(self) -> tuple[PPoly, PPoly]:
-        """Logarithms of the values over that of the load, and their slopes."""
-        spline = CubicSpline(np.log(self.loads), np.log(self.values), axis=0)
+        """Logarithms of the values over that of the load, and their slopes; the offset itself under layers."""
+        if self.layered is None:
+            places, values = np.log(self.loads), np.log(self.values)
+        else:
+            places, values = np.log(self.layered.loads), self.layered.values.copy()
+            values[:, 1:] = np.log(values[:, 1:])
+        spline = CubicSpline(places, values, axis=0)
         return spline, spline.derivative()
+
+    def under(self, place: PointPlace, conditions: FilmConditions) -> ContactFilms:
+        """The same films under an oil supply and between surfaces; their errors are added.
+
+        Parameters
+        ----------
+        place : PointPlace
+            The contact.
+        conditions : FilmConditions
+            Oil supply and surfaces.
+        """
+        from ehdmaps.maps.points.layers import layered_films, on_layer  # with what only layers need
+
+        ends = float(self.loads[0]), float(self.loads[-1])
+        found = layered_films(place, conditions, ends, lambda load: self.read(load)[0].T)
+        errors, response = self.errors, self.response
+        if not conditions.supply.flooded:
+            more = on_layer(place, conditions.supply, self.loads, self.values).errors
+            errors = errors + more
+            response = None if response is None else response.with_errors(more[:, 0], more[:, 3])
+        return dataclasses.replace(self, errors=errors, response=response, layered=found)
 
     def largest_errors(self, load: FloatArray) -> FloatArray:
         """Largest errors at loads: of the films on both sides of each, (4,); NaN without loads.
@@ -205,7 +243,7 @@ def ball_films(
     *,
     table: bool = True,
     solves: bool = True,
-    inlet_heat: bool = False,
+    conditions: FilmConditions = PLAIN,
 ) -> BallFilms:
     """Films of both contacts over load.
 
@@ -225,8 +263,8 @@ def ball_films(
         Whether films are read from the table of points where it has them.
     solves : bool
         Whether films of a contact are solved where the table has too few.
-    inlet_heat : bool
-        Whether heat in the inlet thins them, by its rule (`ehdmaps.physics.point.inlet_heat`).
+    conditions : FilmConditions
+        Heat in the inlet, oil supply and surfaces.
 
     Raises
     ------
@@ -236,10 +274,15 @@ def ball_films(
         If the oil has no such temperature; for heat of an oil whose conductivity is not known.
     """
     contacts = geometry.contacts(material)
-    films = [
-        _contact_films(side, contact, _Point(oil, entrainment_speed, temperature, inlet_heat), table, solves)
-        for side, contact in zip(("inner", "outer"), contacts, strict=True)
-    ]
+    films = []
+    for side, contact in zip(("inner", "outer"), contacts, strict=True):
+        point = _Point(oil, entrainment_speed, temperature, conditions.inlet_heat)
+        found = _contact_films(side, contact, point, table, solves)
+        if not conditions.plain:
+            from ehdmaps.maps.points.layers import PointPlace
+
+            found = found.under(PointPlace(contact, oil, entrainment_speed, temperature), conditions)
+        films.append(found)
     low, high = max(float(side.loads[0]) for side in films), min(float(side.loads[-1]) for side in films)
     inner, outer = (
         film_normal_law(contact, side.curve, (low, _BEYOND * high))

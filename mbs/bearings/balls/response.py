@@ -12,6 +12,7 @@ nothing is known: Z tends to a stiffness. Between loads the parts of c are strai
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 from dataclasses import dataclass
 from functools import cached_property
@@ -77,6 +78,19 @@ class ContactResponse:
         shares = np.stack([np.interp(asked, places, column) for column in self._shares.T], axis=1)
         unit = np.exp(np.interp(asked, places, np.log(self._unit)))
         return Springs(shares, np.multiply.outer(unit, TIMES))
+
+    def with_errors(self, stiffness: FloatArray, damping: FloatArray) -> ContactResponse:
+        """The same response with larger errors of slow motion.
+
+        Parameters
+        ----------
+        stiffness, damping : array (n,)
+            What comes to the errors of k and film offset, and of c.
+        """
+        errors = dict(self.films.errors)
+        for name, more in (("stiffness", stiffness), ("film_offset", stiffness), ("damping", damping)):
+            errors[name] = errors[name] + more
+        return ContactResponse(self.loads, dataclasses.replace(self.films, errors=errors))
 
     def bounds(self, load: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Errors that the table states of slow motion at loads: of k and c, as parts of them, and of the film [m].

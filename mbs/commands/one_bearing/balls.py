@@ -10,11 +10,9 @@ import numpy as np
 
 from ehdmaps.errors import AnalysisError, InputError, SolverError
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.oil_supply import OilSupply
+from ehdmaps.physics.oil_supply import PLAIN, FilmConditions
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
-from ehdmaps.physics.point.film_formulas import POINT_FILMS, point_films
 from ehdmaps.physics.solids import STEEL
-from ehdmaps.physics.surface import Surface
 from ehdmaps.program import tell
 from ehdmaps.units import RPM, SPEED
 from mbs.bearings.balls.ball_bearing import BallForce
@@ -54,12 +52,12 @@ def _read(arguments: argparse.Namespace, chosen: Mapping[str, Any], problems: li
     return Asked(geometry, {})
 
 
-def _words_of(law: str, oil: Lubricant, _: Surface, damper: Damper, heat: bool, flooded: OilSupply) -> tuple[str, str]:
+def _words_of(law: str, oil: Lubricant, damper: Damper, conditions: FilmConditions) -> tuple[str, str]:
     """Law and films."""
     if law:
-        return f"films of {oil.title}, {point_films(heat)}, {_SOURCES[law]}", "films of the law"
+        return f"films of {oil.title}, {conditions.words}, {_SOURCES[law]}", "films of the law"
     dry = "dry Hertz" + (f", {damper.words} of each contact" if damper.words else "")
-    return dry, f"films by the formula of Hamrock and Dowson, {oil.title}, {POINT_FILMS}"
+    return dry, f"films by the formula of Hamrock and Dowson, {oil.title}, {PLAIN.words}"
 
 
 def _films(request: Request) -> Callable[[float], BallLaw] | None:
@@ -77,7 +75,7 @@ def _films_at(request: Request, entrainment_speed: float) -> BallFilms:
         entrainment_speed,
         request.description.temperature,
         solves=request.films == FILMS,
-        inlet_heat=request.inlet_heat,
+        conditions=request.conditions,
     )
 
 
@@ -145,7 +143,7 @@ def _oscillating(points: Sequence[BallPoint]) -> Oscillating:
 BALL_BEARINGS = Family(
     kind=BALLS,
     words="ball bearing",
-    taken=("law", "physics", "clearance", "temperature", "roughness", "films"),
+    taken=("law", "physics", "supply", "clearance", "temperature", "roughness", "films"),
     own=(),
     film_laws=(FILMS, TABLE_LAW),
     beside_laws="; maps are of line contacts",

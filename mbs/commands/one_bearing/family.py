@@ -9,8 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.surface import Surface
+from ehdmaps.physics.oil_supply import FilmConditions
 from mbs.output.one_bearing.kind import Description, Kind
 from mbs.scene.contact_laws import Damper
 
@@ -74,14 +73,10 @@ class Request:
         Whether films are those of the default: speeds without any are dry then, and say why.
     memory : bool
         Whether the films of a file for another program have a memory.
-    inlet_heat : bool
-        Whether heat in the inlet thins the films.
     oil : Lubricant
         Oil of the films.
-    supply : OilSupply
-        Oil supply of the contacts with films.
-    surface : Surface
-        Surfaces of the contacts with films; smooth where a roughness is only assumed.
+    conditions : FilmConditions
+        Heat in the inlet, oil supply and surfaces of contacts with films; smooth where a roughness is only assumed.
     operating : Operating
         Loads and speeds.
     description : Description
@@ -96,10 +91,8 @@ class Request:
     films: str
     by_default: bool
     memory: bool
-    inlet_heat: bool
     oil: Lubricant
-    supply: OilSupply
-    surface: Surface
+    conditions: FilmConditions
     operating: Operating
     description: Description
     trial: bool = False
@@ -139,7 +132,7 @@ class Family:
     force : callable
         (asked, damper) -> force with the dry law.
     words_of : callable
-        (law with films or empty, oil, surface, damper, heat in the inlet, oil supply) -> law, and films, in words.
+        (law with films or empty, oil, damper, conditions of the films) -> law, and films, in words.
     films : callable
         (request) -> law with the films of an entrainment speed [m/s]; None without any.
     at_speed : callable
@@ -164,7 +157,7 @@ class Family:
     read: Callable[[argparse.Namespace, Mapping[str, Any], list[str]], Asked | None]
     axial_problem: Callable[[Any, float], str]
     force: Callable[[Asked, Damper], Any]
-    words_of: Callable[[str, Lubricant, Surface, Damper, bool, OilSupply], tuple[str, str]]
+    words_of: Callable[[str, Lubricant, Damper, FilmConditions], tuple[str, str]]
     films: Callable[[Request], Callable[[float], PairLaw] | None]
     at_speed: Callable[[Request], Callable[[float], AtSpeed]]
     point: type[LocatingPoint]

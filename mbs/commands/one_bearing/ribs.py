@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING, Any
 from ehdmaps.errors import InputError
 from ehdmaps.physics.catalogue import designated
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.oil_supply import OilSupply
+from ehdmaps.physics.oil_supply import FilmConditions
 from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry, ribbed_estimate
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
-from ehdmaps.physics.surface import Surface
 from ehdmaps.units import RPM
 from mbs.bearings.tapered.line_film import LineFilms
 from mbs.bearings.tapered.tapered_bearing import MOST_SLICES, SLICES, TaperedForce
@@ -89,14 +88,13 @@ def _axial_of_ribs(geometry: RibbedGeometry, axial: float) -> str:
     return f"--axial: got {FORCE.text(axial)}; allowed: {allowed}"
 
 
-def _words_of(
-    law: str, oil: Lubricant, surface: Surface, damper: Damper, heat: bool, supply: OilSupply
-) -> tuple[str, str]:
+def _words_of(law: str, oil: Lubricant, damper: Damper, conditions: FilmConditions) -> tuple[str, str]:
     """Law and films."""
     films = f"films by the formulas of Moes and Dowson-Higginson, {oil.title}"
     if law:
+        supply, surface = conditions.supply, conditions.surface
         rough = "" if surface.smooth else f", {surface.label}"
-        warm = ", inlet heat" if heat else ""
+        warm = ", inlet heat" if conditions.inlet_heat else ""
         layer = "" if supply.flooded else f", {supply.label}"
         return f"film table at radius and speed of the middle{warm}{layer}, rib dry{rough}", films
     return "dry, ISO/TS 16281, rib Hertz" + (f", {damper.words} of each contact" if damper.words else ""), films
@@ -110,7 +108,7 @@ def _films(request: Request) -> Callable[[float], LineFilms] | None:
     from mbs.scene.locating.line_films import FilmsOfLines, OilOfLines
 
     geometry, temperature = request.force.geometry, request.description.temperature
-    oil = OilOfLines("table", request.oil, temperature, fastest, request.supply, request.surface, request.inlet_heat)
+    oil = OilOfLines("table", request.oil, temperature, fastest, request.conditions)
     films = FilmsOfLines(geometry, oil)
     return lambda u: films(u / geometry.entrainment_speed(1.0), 0.0)
 

@@ -12,7 +12,7 @@ from ehdmaps.choices import SUPPLY
 from ehdmaps.errors import AnalysisError, InputError, SolverError
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.physics.lubricant import DEFAULT_OIL
-from ehdmaps.physics.oil_supply import FLOODED
+from ehdmaps.physics.oil_supply import FLOODED, FilmConditions
 from ehdmaps.units import TEMPERATURE
 from mbs.analyses.bearing_point import points_over, without_holes
 from mbs.commands.one_bearing.bands import NAME, point_bands, scene_of, turned
@@ -84,7 +84,8 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
     if problems or asked is None or damper is None or oil is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     surface, roughness, for_lambda = read_surface(chosen)
-    words, source = family.words_of(films, oil, surface, damper, heat, supply)
+    conditions = FilmConditions(heat, supply, surface)
+    words, source = family.words_of(films, oil, damper, conditions)
     with_clearance = "clearance" in family.taken
     assumed = (
         *([f"temperature {TEMPERATURE.text(CELSIUS_40)}"] if "temperature" not in chosen else []),
@@ -100,10 +101,8 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
         films=films,
         by_default="law" not in chosen,
         memory=chosen.get("films") == "memory",
-        inlet_heat=heat,
         oil=oil,
-        supply=supply,
-        surface=surface,
+        conditions=conditions,
         operating=operating,
         description=Description(
             law=words,

@@ -53,12 +53,9 @@ def _physics(arguments: argparse.Namespace, model: Model) -> Iterator[str]:
         if verdict.matters:
             yield f"  {verdict.line}"
     if model.balls and model.scene.lubricant is not None:
-        heat = (
-            "with heat in the inlet"
-            if any(getattr(one.films, "inlet_heat", False) for one in model.balls)
-            else "isothermal"
-        )
-        yield f"  films of balls are smooth, flooded, Newtonian and {heat}; what that leaves out is not weighed"
+        found = {one.films.conditions.words: None for one in model.balls if one.films is not None}
+        words = f"{next(iter(found), '')}, " if found else ""
+        yield f"  films of balls are {words}Newtonian; what that leaves out is not weighed"
 
 
 def _oil(scene: Scene) -> Iterator[str]:

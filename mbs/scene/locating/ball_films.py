@@ -12,6 +12,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import PLAIN, FilmConditions
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.solids import STEEL
 from mbs.scene.specs import BallSpec
@@ -41,7 +42,7 @@ def films_of_balls(spec: BallSpec, surroundings: Surroundings) -> FilmsOfPoints:
     # films depend neither on the clearance nor on which way it stands
     geometry = dataclasses.replace(spec.geometry, clearance=0.0, contact_angle=abs(spec.geometry.contact_angle))
     laws = surroundings.laws
-    return FilmsOfPoints(geometry, laws.lubricant, surroundings.temperature, laws.inlet_heat)
+    return FilmsOfPoints(geometry, laws.lubricant, surroundings.temperature, laws.conditions)
 
 
 @dataclass(frozen=True)
@@ -56,14 +57,14 @@ class FilmsOfPoints:
         The oil.
     temperature : float
         Temperature of the raceways [K].
-    inlet_heat : bool
-        Whether heat in the inlet thins the films.
+    conditions : FilmConditions
+        Heat in the inlet, oil supply and surfaces.
     """
 
     geometry: BallGeometry
     oil: Lubricant
     temperature: float
-    inlet_heat: bool = False
+    conditions: FilmConditions = PLAIN
 
     def __call__(self, inner_speed: float, outer_speed: float) -> BallLaw:
         """Laws at speeds of the inner and the outer ring [rad/s]."""
@@ -105,8 +106,8 @@ def _films_at(films: FilmsOfPoints, u: float) -> BallFilms:
     """Films at an entrainment speed of the table [m/s]."""
     from mbs.bearings.balls.films import ball_films
 
-    heat = films.inlet_heat
-    return ball_films(films.geometry, films.oil, u, films.temperature, solves=False, inlet_heat=heat)
+    at = films.geometry, films.oil, u, films.temperature
+    return ball_films(*at, solves=False, conditions=films.conditions)
 
 
 @functools.lru_cache(maxsize=32)
@@ -117,7 +118,7 @@ def _line_map(films: FilmsOfPoints, side: int) -> EHDMap:
     ellipse = films.geometry.contacts(STEEL)[side]
     contact = LineContact("line", ellipse.rolling_radius, STEEL, "half_space", reference_depth=ellipse.rolling_radius)
     temperatures = min(TEMPERATURES[0], films.temperature), max(TEMPERATURES[1], films.temperature)
-    return table_map(contact, films.oil, LOADS, temperatures=temperatures, inlet_heat=films.inlet_heat)
+    return table_map(contact, films.oil, LOADS, temperatures=temperatures, inlet_heat=films.conditions.inlet_heat)
 
 
 @dataclass(frozen=True)
@@ -138,4 +139,5 @@ class _Points:
         rolling = _line_map(self.of, side).rolling_film
         if rolling is None:
             return np.full(load.shape, np.nan)
-        return rolling.rolling_force("line", load, entrainment_speed, self.of.temperature)
+        at = "line", load, entrainment_speed, self.of.temperature
+        return rolling.rolling_force(*at, self.of.conditions.supply)

@@ -7,9 +7,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ehdmaps.errors import InputError
-from ehdmaps.physics.oil_supply import FLOODED
-from ehdmaps.physics.point.film_formulas import point_films
-from ehdmaps.physics.surface import SMOOTH
 from ehdmaps.units import TEMPERATURE
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_element import MachineBalls
@@ -36,12 +33,8 @@ class _Kind:
     ----------
     element : type
         Class of the element.
-    laws : tuple of str
-        Laws with which it has films.
     allowed : str
-        Those in a message.
-    flooded : str
-        Why its films take no oil supply; empty where they do.
+        Laws with which it has films, in a message.
     words : callable
         spec -> how it is called.
     sources : callable
@@ -53,9 +46,7 @@ class _Kind:
     """
 
     element: type[LocatingElement]
-    laws: tuple[str, ...]
     allowed: str
-    flooded: str
     words: Callable[[Any], str]
     sources: Callable[[ContactLaws], tuple[str, str]]
     force: Callable[[Any, Damper], Any]
@@ -69,9 +60,7 @@ def _oil_of_lines(laws: ContactLaws, temperature: float, fastest: float = 0.0) -
         laws.lubricant,
         temperature,
         fastest,
-        laws.asked_supply or laws.scene.supply or FLOODED,
-        laws.surface or laws.scene.surface or SMOOTH,
-        laws.inlet_heat,
+        laws.conditions,
     )
 
 
@@ -86,7 +75,7 @@ def _films_of_lines(spec: TaperedSpec, surroundings: Surroundings) -> FilmsOfLin
 
 def _sources_of_points(laws: ContactLaws) -> tuple[str, str]:
     """Films of balls in words."""
-    return f"films from the film table of points, {laws.lubricant.title}, {point_films(laws.inlet_heat)}", ""
+    return f"films from the film table of points, {laws.lubricant.title}, {laws.conditions.words}", ""
 
 
 def _sources_of_lines(laws: ContactLaws) -> tuple[str, str]:
@@ -95,8 +84,8 @@ def _sources_of_lines(laws: ContactLaws) -> tuple[str, str]:
     source = "film formula moes" if films.law == "formula" else "films from the film table"
     return (
         f"{source} at radius and speed of the middle of rollers, {films.oil.title}, "
-        f"{'inlet heat, ' if films.inlet_heat else ''}{films.supply.label}, "
-        f"{surface_label(films.surface)}",
+        f"{'' if films.law == 'formula' else 'inlet heat, ' * films.conditions.inlet_heat}"
+        f"{films.conditions.supply.label}, {surface_label(films.conditions.surface)}",
         ", ribs dry",
     )
 
@@ -115,9 +104,7 @@ def _dry_rollers(spec: TaperedSpec, damper: Damper) -> TaperedForce:
 _KINDS: dict[type[LocatingSpec], _Kind] = {
     BallSpec: _Kind(
         element=MachineBalls,
-        laws=("table", "map"),
         allowed="table (films from the film table of points)",
-        flooded="films of ball bearings are flooded",
         words=lambda spec: "ball bearing",
         sources=_sources_of_points,
         force=_dry_balls,
@@ -125,9 +112,7 @@ _KINDS: dict[type[LocatingSpec], _Kind] = {
     ),
     TaperedSpec: _Kind(
         element=TaperedElement,
-        laws=("table", "map", "formula"),
         allowed="table, formula",
-        flooded="",
         words=lambda spec: str(spec.geometry.kind).replace("bearing", "roller bearing"),
         sources=_sources_of_lines,
         force=_dry_rollers,
@@ -151,14 +136,10 @@ def located_problems(spec: LocatingSpec, surroundings: Surroundings) -> list[str
     if spec.inner.partition(":")[0] == spec.outer.partition(":")[0]:
         problems.append(f"{where}: got {spec.inner} and {spec.outer}; allowed: rings on two bodies")
     laws = surroundings.laws
-    if laws.chosen in kind.laws:
+    if laws.films_of(spec):
         oil, kelvin = laws.scene.lubricant, surroundings.temperature
         if oil is None:
             return [*problems, f"{where}: films need the oil of the scene; add [lubricant]"]
-        supply = laws.asked_supply or laws.scene.supply
-        if kind.flooded and supply is not None and not supply.flooded:
-            allowed = "no [supply] and no --supply, or dry contacts"
-            return [*problems, f"{where}: got {supply.label}; {kind.flooded}; allowed: {allowed}"]
         try:
             oil.at(kelvin)
         except InputError as error:
@@ -183,9 +164,9 @@ def located_law_words(laws: ContactLaws) -> list[str]:
     """
     found = []
     for held, kind in _KINDS.items():
-        named = [f"{kind.words(spec)}s" for spec in laws.scene.located if type(spec) is held]
-        words = " and ".join(dict.fromkeys(named))
-        if words and laws.chosen in kind.laws:
+        specs = [spec for spec in laws.scene.located if type(spec) is held]
+        words = " and ".join(dict.fromkeys(f"{kind.words(spec)}s" for spec in specs))
+        if words and laws.films_of(specs[0]):
             source, left_out = kind.sources(laws)
             found.append(f"{words} with {source}, {FILM_WORDS[laws.memory]}{left_out}")
         elif words:
@@ -206,7 +187,7 @@ def build_located(spec: LocatingSpec, surroundings: Surroundings) -> Built:
         What it is built into.
     """
     laws, spin, kind = surroundings.laws, surroundings.places.spin, _KINDS[type(spec)]
-    has_films = laws.chosen in kind.laws
+    has_films = laws.films_of(spec)
     damper = (None if has_films else hertz_damper(laws.chosen)) or Damper()
     element = kind.element(
         name=spec.name,

@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING, Literal
 
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.oil_supply import FLOODED, OilSupply
+from ehdmaps.physics.oil_supply import PLAIN, FilmConditions
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.physics.solids import STEEL
-from ehdmaps.physics.surface import SMOOTH, Surface
 from mbs.bearings.films import FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.tapered.line_film import LOADS, LineFilms, cylinder_of, line_films
 
@@ -41,19 +40,15 @@ class OilOfLines:
         Temperature of the raceways [K].
     fastest : float
         Highest entrainment speed that is asked for [m/s].
-    supply, surface : OilSupply, Surface
-        Oil supply and surfaces of the contacts.
-    inlet_heat : bool
-        Whether heat in the inlet thins films of the table.
+    conditions : FilmConditions
+        Heat in the inlet of films of the table, oil supply and surfaces.
     """
 
     law: Literal["table", "formula"]
     oil: Lubricant
     temperature: float
     fastest: float = 0.0
-    supply: OilSupply = FLOODED
-    surface: Surface = SMOOTH
-    inlet_heat: bool = False
+    conditions: FilmConditions = PLAIN
 
 
 @dataclass(frozen=True)
@@ -115,15 +110,15 @@ def _map(cylinder: BearingGeometry, films: OilOfLines) -> EHDMap:
     from ehdmaps.jobs.make.table_law import TEMPERATURES, table_map
 
     temperatures = min(TEMPERATURES[0], films.temperature), max(TEMPERATURES[1], films.temperature)
-    return table_map(cylinder, films.oil, LOADS, _speeds(films), temperatures, inlet_heat=films.inlet_heat)
+    return table_map(cylinder, films.oil, LOADS, _speeds(films), temperatures, inlet_heat=films.conditions.inlet_heat)
 
 
 @functools.lru_cache(maxsize=16)
 def _lines(cylinder: BearingGeometry, films: OilOfLines) -> FilmSource:
     """Pressures, films and rolling forces."""
     if films.law == "formula":
-        return FormulaFilms(cylinder.contacts(STEEL, "iso16281"), films.oil, films.supply)
-    return MapFilms(_map(cylinder, films), films.supply)
+        return FormulaFilms(cylinder.contacts(STEEL, "iso16281"), films.oil, films.conditions.supply)
+    return MapFilms(_map(cylinder, films), films.conditions.supply)
 
 
 def _speeds(films: OilOfLines) -> tuple[float, float]:
@@ -147,12 +142,15 @@ def _laws(cylinder: BearingGeometry, films: OilOfLines) -> tuple[ContactLaw, Con
                 entrainment_speed=speeds,
                 kind=kind,
                 outside="clamp",
-                supply=films.supply,
-                surface=films.surface,
+                supply=films.conditions.supply,
+                surface=films.conditions.surface,
             )
             for kind in ("inner", "outer")
         )
         return inner, outer
     emap = _map(cylinder, films)
-    inner, outer = (emap.law(kind, "clamp", supply=films.supply, surface=films.surface) for kind in ("inner", "outer"))
+    chosen = films.conditions
+    inner, outer = (
+        emap.law(kind, "clamp", supply=chosen.supply, surface=chosen.surface) for kind in ("inner", "outer")
+    )
     return inner, outer

@@ -1,0 +1,129 @@
+"""Films of a point over load on an oil layer and between rough surfaces, from flooded films of smooth ones.
+
+Layers act on a fine grid of loads, so that slopes of the film offset, and stiffness with them, are those of what is
+read: of the capped offset on a layer, of the distance of the mean planes between rough surfaces. Damping of the layer
+is that of the flooded contact; of the film between asperities the loss compliance goes with the square of its share.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import FilmConditions, OilSupply
+from ehdmaps.physics.point.ellipse import Ellipse
+from ehdmaps.physics.point.inlet_heat import line_number
+from ehdmaps.physics.point.oil_layer import Layered, layered
+from ehdmaps.physics.surface import Surface
+
+PER_DECADE = 40
+
+_LEAST_SHARE = 1e-3
+
+OFFSET, CENTRAL, SMALLEST, DAMPING = range(4)
+"""Numbers of a film in their order: film offset, central and smallest film [m], damping [N s/m]."""
+
+
+class PointPlace(NamedTuple):
+    """A contact with its oil at a speed and a temperature.
+
+    Attributes
+    ----------
+    ellipse : Ellipse
+        The contact.
+    oil : Lubricant
+        The oil.
+    speed, temperature : float
+        u [m/s], > 0, and T [K].
+    """
+
+    ellipse: Ellipse
+    oil: Lubricant
+    speed: float
+    temperature: float
+
+
+class LayeredFilms(NamedTuple):
+    """Films over load.
+
+    Attributes
+    ----------
+    loads : ndarray, shape (n,)
+        F [N], rising.
+    values : ndarray, shape (n, 4)
+        See `OFFSET`; the offset may be below zero between rough surfaces, where it is the distance of the mean planes.
+    share : ndarray, shape (n,)
+        Share of the film in the load; 1 between smooth surfaces.
+    """
+
+    loads: FloatArray
+    values: FloatArray
+    share: FloatArray
+
+
+def on_layer(place: PointPlace, supply: OilSupply, load: FloatArray, values: FloatArray) -> Layered:
+    """Factors and errors of films on an oil layer.
+
+    Parameters
+    ----------
+    place : PointPlace
+        The contact.
+    supply : OilSupply
+        Oil before it.
+    load : ndarray, shape (n,)
+        F [N], > 0.
+    values : ndarray, shape (n, 4)
+        Flooded films.
+    """
+    ellipse, state = place.ellipse, place.oil.at(place.temperature)
+    ratio = supply.oil_layer / (state.density_ratio(np.asarray(ellipse.max_pressure(load))) * values[:, CENTRAL])
+    line = line_number(ellipse, state.viscosity, load, place.speed)
+    return layered(ellipse.ellipticity, ratio, values[:, CENTRAL] / values[:, OFFSET], line)
+
+
+def layered_films(
+    place: PointPlace,
+    conditions: FilmConditions,
+    ends: tuple[float, float],
+    read: Callable[[FloatArray], FloatArray],
+) -> LayeredFilms:
+    """Films under conditions, from flooded ones of smooth surfaces.
+
+    Parameters
+    ----------
+    place : PointPlace
+        The contact.
+    conditions : FilmConditions
+        Oil supply and surfaces; heat is in the films already.
+    ends : (float, float)
+        Lowest and highest load [N].
+    read : callable
+        Loads (n,) to flooded films (n, 4).
+    """
+    loads = np.geomspace(*ends, max(8, round(PER_DECADE * np.log10(ends[1] / ends[0]))))
+    values = read(loads)
+    if not conditions.supply.flooded:
+        at = on_layer(place, conditions.supply, loads, values)
+        values = values * np.column_stack([at.offset, at.film, at.film, np.ones(loads.size)])
+    if conditions.surface.smooth:
+        return LayeredFilms(loads, values, np.ones(loads.size))
+    return _rough(place, conditions.surface, loads, values)
+
+
+def _rough(place: PointPlace, surface: Surface, loads: FloatArray, values: FloatArray) -> LayeredFilms:
+    """Films between rough surfaces, from those of smooth ones."""
+    from ehdmaps.maps.points.rough import load_shares, shared_films  # with the asperities
+
+    thicker = shared_films(place.ellipse, place.oil, loads, place.speed, place.temperature)
+    share, distance = load_shares(surface, place.ellipse, loads, values[:, OFFSET], thicker)
+    dry = 1.0 / np.asarray(place.ellipse.stiffness(loads))
+    smooth, rough = (
+        dry - CubicSpline(np.log(loads), film)(np.log(loads), 1) / loads for film in (values[:, OFFSET], distance)
+    )
+    damping = values[:, DAMPING] * (np.maximum(share, _LEAST_SHARE) * smooth / rough) ** 2
+    return LayeredFilms(loads, np.column_stack([distance, values[:, CENTRAL], values[:, SMALLEST], damping]), share)
