@@ -38,6 +38,8 @@ class AxisRule:
         Allowed values; wide enough for every bearing, tight enough to catch a wrong unit.
     display : Display
         Unit and format for messages.
+    spacing : str, optional
+        Spacing of an axis that states none; it must state one if left out.
     """
 
     key: str
@@ -45,6 +47,7 @@ class AxisRule:
     low: float
     high: float
     display: Display
+    spacing: str | None = None
 
 
 LOAD_AXIS = AxisRule("load", "N/m", 1.0, 1e7, LOAD)
@@ -117,7 +120,7 @@ def _spaced(table: Table, rule: AxisRule) -> tuple[float, ...] | None:
     first = table.quantity("from", rule.unit, rule.low, rule.high, rule.display, required=True)
     last = table.quantity("to", rule.unit, rule.low, rule.high, rule.display, required=True)
     points = table.integer("points", 2, MOST_VALUES, required=True)
-    spacing = table.choice("spacing", ("log", "linear"), required=True)
+    spacing = table.choice("spacing", ("log", "linear"), required=rule.spacing is None) or rule.spacing
     table.close()
     if first is not None and last is not None and not first < last:
         table.note("from", f"got {rule.display.text(first)}, not below to = {rule.display.text(last)}; exchange them")

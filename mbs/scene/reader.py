@@ -151,7 +151,7 @@ def _read_orders(section: Table) -> tuple[float, ...]:
     return tuple(float(value) for value in values)
 
 
-_FREQUENCIES = AxisRule("frequencies", "Hz", 1e-3, 1e6, HERTZ)
+_FREQUENCIES = AxisRule("frequencies", "Hz", 1e-3, 1e6, HERTZ, "log")
 _QUANTITIES = ("displacement", "velocity", "acceleration")
 
 

@@ -14,7 +14,7 @@ from mbs import assemble, cli, modes, parse_scene, read_scene, statics
 from mbs.linearised.modes import undamped_modes
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
-from mbs.scene.shafts.new import new_shaft
+from mbs.scene.shafts.new import MACHINES, new_shaft
 from mbs.scene.shafts.rows import csv_rows, csv_sections
 from tests.conformance.test_shipped import SHORTER
 
@@ -392,6 +392,49 @@ def test_a_new_scene_of_a_file_of_sections(tmp_path, monkeypatch, capsys):
     assert cli.main(["new", "shaft", "--csv", "sub/own.toml", "-o", "sub/own.toml"]) == 2
     said = capsys.readouterr().err
     assert "--csv: sub/own.toml" in said and "-o: got sub/own.toml" in said
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        "length [mm],outer diameter [mm],inner diameter [mm]\n60,50,10\n40,60,0\n",
+        "L (mm),D (mm),d (mm)\n60,50,10\n40,60,0\n",
+        "d_mm;D_mm;length_mm\n10;50,0;60\n0;60;40\n",
+        "x / mm,D / mm,d / mm\n0,50,10\n60,60,0\n100,,\n",
+        "from [m],to [cm],diameter [mm],bore [mm]\n0,6,50,10\n0.06,10,60,\n",
+    ],
+)
+def test_titles_of_columns_as_drawings_have_them(content, tmp_path):
+    (tmp_path / "a.csv").write_text(content)
+    first, second = csv_sections(tmp_path / "a.csv")
+    held = [(part.begin, part.end, part.diameter, part.bore) for part in (first, second)]
+    np.testing.assert_allclose(held, [(0.0, 0.06, 0.05, 0.01), (0.06, 0.1, 0.06, 0.0)], rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("content", "text"),
+    [
+        ("x [mm],D [mm]\n0,50\n", "got 1 rows with x; allowed: at least two"),
+        ("x [mm],D [mm]\n0,50\n,40\n9,\n", "line 3: has no x; allowed: one in each row"),
+        ("x [mm],length [mm],D [mm]\n0,1,50\n", "got x beside length, from or to"),
+        ("d [mm],diameter [mm],length [mm]\n1,2,3\n", "got the column 'diameter [mm]' twice"),
+    ],
+)
+def test_places_that_leave_a_section_open_are_refused(content, text, tmp_path):
+    (tmp_path / "a.csv").write_text(content)
+    with pytest.raises(InputError, match=re.escape(text)):
+        csv_sections(tmp_path / "a.csv")
+
+
+@pytest.mark.parametrize("what", sorted(MACHINES))
+def test_a_new_machine_is_the_shipped_one_and_names_its_own_file(what, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(["new", what]) == 0
+    text = (tmp_path / f"{what}.toml").read_text()
+    assert f"mbs statics {what}.toml " in text
+    assert read_scene(f"{what}.toml").bearings == read_scene(MACHINES[what]).bearings
+    assert cli.main(["new", what, "--csv", f"{what}.toml", "-o", "other.toml"]) == 2
+    assert "--csv: allowed: of a shaft alone" in capsys.readouterr().err
 
 
 def test_a_name_that_no_text_holds_is_refused(tmp_path):

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ehdmaps.errors import InputError
 from ehdmaps.outputs import Kind, Output, output_problems, write_text
-from mbs.scene.shafts.new import new_shaft
+from mbs.scene.shafts.new import MACHINES, new_machine, new_shaft
 
 NEW = Kind("a file that may be replaced", (".toml",), lambda path: False)
 """Scenes that people go on with: none is ever replaced."""
@@ -19,7 +19,15 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     sections = None if arguments.csv is None else Path(arguments.csv)
     problems, text = [], ""
     try:
-        text = new_shaft(target, sections)
+        if arguments.what in MACHINES:
+            problems += (
+                []
+                if sections is None
+                else ["--csv: allowed: of a shaft alone; write its path as sections of a [[shafts]]"]
+            )
+            text = new_machine(arguments.what, target)
+        else:
+            text = new_shaft(target, sections)
     except InputError as error:
         problems += [f"--csv: {problem}" for problem in error.problems]
     problems += output_problems([Output("-o", target, NEW)], [] if sections is None else [sections])

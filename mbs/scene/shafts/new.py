@@ -1,9 +1,10 @@
-"""A commented scene of a shaft on two bearings, to begin an own machine with."""
+"""Commented scenes to begin an own machine with: a shaft on two bearings, or a shipped machine as it stands."""
 
 from __future__ import annotations
 
 import json
 import os
+import re
 from importlib import resources
 from itertools import accumulate, pairwise
 from pathlib import Path
@@ -13,11 +14,29 @@ from ehdmaps.errors import InputError
 from mbs.flexible.shaft_parts import Section
 from mbs.scene.shafts.rows import csv_sections
 
+MACHINES = {"drive": "electric_drive", "gearbox": "two_stage", "spindle": "spindle"}
+"""Scenes that ship and need no other file, by what they are of."""
+
 _ROWS = ((60, 50), (120, 60), (160, 55), (60, 50))
 """Length and diameter of the sections of a new shaft [mm]."""
 
 _SMALLEST, _LARGEST = 20, 100
 """Bores of the bearings of series 2 that the catalogue has [mm]."""
+
+
+def new_machine(what: str, target: Path) -> str:
+    """Text of a shipped scene, whose commands name the new file.
+
+    Parameters
+    ----------
+    what : str
+        One of MACHINES.
+    target : Path
+        File for which the text is made.
+    """
+    text = (resources.files("mbs") / "systems" / f"{MACHINES[what]}.toml").read_text(encoding="utf-8")
+    command = re.compile(rf"^(# +mbs \w+ ){MACHINES[what]}\b", re.MULTILINE)
+    return command.sub(lambda found: f"{found[1]}{target.name}", text)
 
 
 def new_shaft(target: Path, sections: Path | None = None) -> str:

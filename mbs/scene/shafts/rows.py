@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import pairwise
 from pathlib import Path
 
 from ehdmaps.errors import InputError
@@ -21,6 +22,10 @@ CSV_FORM = "length [mm], outer diameter [mm], inner diameter [mm]"
 
 _COLUMNS = {
     "length": "length",
+    "l": "length",
+    "from": "from",
+    "to": "to",
+    "x": "x",
     "outer diameter": "diameter",
     "diameter": "diameter",
     "inner diameter": "bore",
@@ -33,9 +38,15 @@ _COLUMNS = {
     "poisson ratio": "poisson_ratio",
     "density": "density",
 }
-"""Titles of the columns of a file, and the keys of a row in a scene that they stand for."""
+"""Titles of the columns of a file, and the keys of a row in a scene that they stand for.
 
-_TITLE = re.compile(r"([^\[\]]*)(?:\[([^\[\]]*)\])?")
+In a column x stand the places where the sections begin; its last row ends the shaft. Drawings have d for the bore
+beside D for the outer diameter; either of them alone is the diameter.
+"""
+
+_LETTERS = ("d", "D")
+
+_TITLE = re.compile(r"(.*?)[\s_]*(?:\[([^\[\]]*)\]|\(([^()]*)\)|/\s*(\S+)|[\s_](mm|cm|m|in|inch|um|GPa|MPa|Pa))?\s*")
 _ALLOWED = f"a table in CSV whose first line is such as: {CSV_FORM}"
 
 
@@ -102,13 +113,27 @@ def csv_rows(path: Path) -> list[tuple[str, dict[str, object]]]:
     if len(cells) != len(lines):
         raise InputError(f"{path}: a cell goes over several lines; allowed: {_ALLOWED}")
     columns = _columns(path, cells[0])
+    keys = [key for key, _ in columns]
     rows = []
     for (number, _), row in zip(lines[1:], cells[1:], strict=True):
         where = f"{path}, line {number}"
         if len(row) > len(columns):
             raise InputError(f"{where}: got {len(row)} cells; allowed: up to {len(columns)}, as in the first line")
         rows.append((where, dict(_values(columns, [decimal_points(cell, between) for cell in row]))))
-    return rows
+    return rows if "x" not in keys else _between_places(path, rows)
+
+
+def _between_places(path: Path, rows: list[tuple[str, dict[str, object]]]) -> list[tuple[str, dict[str, object]]]:
+    """Rows with `from` and `to`: each section goes on to where the next one begins, and the last row ends the shaft."""
+    if len(rows) < 2:
+        raise InputError(f"{path}: got {len(rows)} rows with x; allowed: at least two, the last one ends the shaft")
+    lacking = [where for where, values in rows if "x" not in values]
+    if lacking:
+        raise InputError([f"{where}: has no x; allowed: one in each row" for where in lacking])
+    return [
+        (where, {key: value for key, value in values.items() if key != "x"} | {"from": values["x"], "to": after["x"]})
+        for (where, values), (_, after) in pairwise(rows)
+    ]
 
 
 def csv_sections(path: Path) -> list[Section]:
@@ -137,22 +162,36 @@ def _columns(path: Path, titles: Sequence[str]) -> list[tuple[str, str]]:
     """Key and unit of each column."""
     found: list[tuple[str, str]] = []
     problems = []
-    for title in titles:
-        match = _TITLE.fullmatch(title.strip())
-        name, unit = (match[1], match[2]) if match else (title, None)
+    split = [_split(title) for title in titles]
+    both = {name for name, _ in split} >= set(_LETTERS)
+    for title, (name, unit) in zip(titles, split, strict=True):
         key = _COLUMNS.get(" ".join(name.lower().replace("_", " ").split()))
+        if name in _LETTERS:
+            key = "bore" if both and name == "d" else "diameter"
         if key is None:
-            problems.append(f"got the column {short(title.strip())}; allowed: {', '.join(_COLUMNS)}")
+            problems.append(f"got the column {short(title.strip())}; allowed: {', '.join(_COLUMNS)}, d, D")
         elif key in (other for other, _ in found):
             problems.append(f"got the column {short(title.strip())} twice; allowed: each once")
-        elif key != "poisson_ratio" and not (unit or "").strip():
+        elif key != "poisson_ratio" and not unit:
             problems.append(f"column {short(title.strip())}: has no unit; allowed: in brackets, such as {CSV_FORM}")
-        found.append((key or title, (unit or "").strip()))
-    missing = [key for key in ("length", "diameter") if key not in (other for other, _ in found)]
+        found.append((key or title, unit))
+    keys = {key for key, _ in found}
+    missing = [] if keys & {"length", "x"} or {"from", "to"} <= keys else ["length"]
+    missing += [] if "diameter" in keys else ["diameter"]
     problems += [f"has no column of the {key}; allowed: {_ALLOWED}" for key in missing]
+    if "x" in keys and keys & {"length", "from", "to"}:
+        problems.append("got x beside length, from or to; allowed: one way to say where sections lie")
     if problems:
         raise InputError([f"{path}, first line: {problem}" for problem in problems])
     return found
+
+
+def _split(title: str) -> tuple[str, str]:
+    """Name and unit of a title such as `length [mm]`, `D (mm)`, `d_mm` or `x / mm`; no unit is empty."""
+    match = _TITLE.fullmatch(title.strip())
+    if match is None:
+        return title.strip(), ""
+    return match[1].strip(), next((unit.strip() for unit in match.groups()[1:] if unit), "")
 
 
 def _values(columns: Sequence[tuple[str, str]], row: Sequence[str]) -> Iterator[tuple[str, object]]:
