@@ -280,6 +280,10 @@ def hammer_problems(scene: Scene) -> list[str]:
             ("sensors", scene.sensors, "at least one sensor"),
         )
         if not there
+    ] + [
+        f"{scene.name}: input {entry.name!r} is a gear mesh; allowed: a place of a body, which a hammer can hit"
+        for entry in scene.inputs
+        if not entry.places
     ]
 
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.units import RPM
+from ehdmaps.units import MOTIONS, RPM, Display
 from mbs.model.elements import Operation
 from mbs.model.findings import MEANINGLESS, Cause, Finding, Severity, worst_of
 from mbs.model.on_rings import ring_motion
@@ -90,7 +90,7 @@ def lift_off(load: DynamicLoad, scene: Scene) -> Finding:
         Scene with the input.
     """
     given = next(entry for entry in scene.inputs if entry.name == load.input)
-    amplitude = f"{given.amplitude:.4g} {'N m' if np.any(given.direction[3:]) else 'N'}"
+    amplitude = MOTIONS.get(given.unit, Display(given.unit)).text(given.amplitude)
     words = (
         f"{load.words} at {load.frequency:.4g} Hz (input {load.input} at its amplitude of {amplitude}): contacts lift "
         "off, a linear analysis is not valid there"

@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 import scipy
@@ -29,8 +30,11 @@ from ehdmaps.units import MOTIONS, Display
 from mbs.linearised.bands import film_share, law_bands
 from mbs.linearised.dynamic import dynamic_stiffness, system_film_states
 from mbs.linearised.modes import StateModes
-from mbs.model.elements import Input, Quantity, Sensor
+from mbs.model.elements import Input, MeshInput, Quantity, Sensor
 from mbs.model.equilibrium import Equilibrium
+
+if TYPE_CHECKING:
+    from mbs.gears.gear import GearMesh
 
 _ORDER: dict[Quantity, int] = {"displacement": 0, "velocity": 1, "acceleration": 2}
 """How often a sensor differentiates."""
@@ -91,7 +95,7 @@ def peak_places(size: FloatArray) -> IntArray:
 
 def response_unit(sensor: Sensor, entry: Input) -> str:
     """Unit of the response of a sensor to an input, such as m/s2/N; rad for rotations, (N m) for moments."""
-    return f"{sensor_unit(sensor)}/{'(N m)' if np.any(entry.direction[3:]) else 'N'}"
+    return f"{sensor_unit(sensor)}/{f'({entry.unit})' if ' ' in entry.unit else entry.unit}"
 
 
 def sensor_unit(sensor: Sensor) -> str:
@@ -103,6 +107,9 @@ def response_display(sensor: Sensor, entry: Input) -> Display:
     """Display in which people see the response of a sensor to an input, such as um/N."""
     shown = MOTIONS[sensor_unit(sensor)]
     per = response_unit(sensor, entry).removeprefix(sensor_unit(sensor))
+    if entry.unit in MOTIONS:
+        beside = MOTIONS[entry.unit]
+        return Display(f"{shown.unit}/{beside.unit}", shown.factor / beside.factor)
     return Display(shown.unit + per, shown.factor)
 
 
@@ -132,9 +139,43 @@ class StateSpace:
 
 def input_matrix(balance: Equilibrium, inputs: Sequence[Input]) -> FloatArray:
     """Generalised load of each input at 1 N or 1 N m, shape (n, inputs)."""
-    system = balance.system
-    columns = [system.relative(entry.on, entry.against).T @ entry.direction for entry in inputs]
-    return np.stack(columns, axis=1) if columns else np.zeros((system.size, 0))
+    columns = [_load(balance, entry) for entry in inputs]
+    return np.stack(columns, axis=1) if columns else np.zeros((balance.system.size, 0))
+
+
+def _load(balance: Equilibrium, entry: Input) -> FloatArray:
+    """Generalised load of an input at 1 N or 1 N m, shape (n,)."""
+    if isinstance(entry, MeshInput):
+        return _flank(balance, entry)[0]
+    found: FloatArray = balance.system.relative(entry.on, entry.against).T @ entry.direction
+    return found
+
+
+def _factors(balance: Equilibrium, inputs: Sequence[Input], s: ComplexArray) -> ComplexArray:
+    """Load of one unit of each input, shape (frequencies, inputs): 1, or of a transmission error that of its mesh.
+
+    The flank that carries is compressed by r u - e, so that e loads the bodies by r (k + s c) e; of the other flank e
+    is a compression, and its sign turns.
+    """
+    found = np.ones((s.size, len(inputs)), dtype=np.complex128)
+    for column, entry in enumerate(inputs):
+        if isinstance(entry, MeshInput) and entry.quantity == "transmission_error":
+            _, sign, stiffness, damping = _flank(balance, entry)
+            found[:, column] = sign * (stiffness + s * damping)
+    return found
+
+
+def _flank(balance: Equilibrium, entry: MeshInput) -> tuple[FloatArray, float, float, float]:
+    """Load by a unit force on the flank that carries, sign of its error, stiffness and damping at the equilibrium."""
+    from mbs.gears.gear_kernel import BY_RATE, SLOPE
+
+    found = next(connected for connected in balance.system.elements if connected.element.name == entry.pair)
+    mesh = cast("GearMesh", found.element)
+    displacement = found.transform @ balance.displacement
+    flanks = mesh.flanks(displacement, np.zeros_like(displacement), balance.operation)
+    flank = int(np.argmax(flanks[:, SLOPE]))
+    load = np.asarray(found.transform.T @ mesh.rows[flank], dtype=np.float64)
+    return load, 1.0 - 2.0 * flank, float(flanks[flank, SLOPE]), float(flanks[flank, BY_RATE])
 
 
 def sensor_matrix(balance: Equilibrium, sensors: Sequence[Sensor]) -> FloatArray:
@@ -196,7 +237,7 @@ def responses(balance: Equilibrium, inputs: Sequence[Input], frequencies: FloatA
         part = slice(first, first + _AT_ONCE)
         dynamic = dynamic_stiffness(balance, s[part])
         motion[part] = np.linalg.solve(dynamic, np.broadcast_to(load, (dynamic.shape[0], *load.shape)))
-    return motion
+    return motion * _factors(balance, inputs, s)[:, None, :] if inputs else motion
 
 
 def frequency_response(
@@ -277,6 +318,8 @@ def modal_response(
     displacement = (resonance @ residues).reshape(omega.size, len(sensors), len(inputs))
     orders = np.array([_ORDER[sensor.quantity] for sensor in sensors], dtype=np.int64)
     result: ComplexArray = displacement * ((1j * omega[:, None]) ** orders)[:, :, None]
+    if inputs:
+        result *= _factors(balance, inputs, np.asarray(1j * omega, dtype=np.complex128))[:, None, :]
     return result
 
 

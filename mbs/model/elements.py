@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 GROUND = "ground"
 """The place that does not move."""
 
+MESH = "mesh:"
+"""What the place of an input begins with that is a gear mesh; the name of the pair follows."""
+
 
 class Operation(NamedTuple):
     """Operating point of a system on its prescribed course.
@@ -541,3 +544,41 @@ class Input:
     direction: FloatArray
     against: str = GROUND
     amplitude: float = 1.0
+
+    @property
+    def unit(self) -> str:
+        """Unit of the amplitude: N, or N m of a moment."""
+        return "N m" if np.any(self.direction[3:]) else "N"
+
+    @property
+    def places(self) -> tuple[str, ...]:
+        """Places at which it acts."""
+        return self.on, self.against
+
+
+@dataclass(frozen=True, eq=False)
+class MeshInput(Input):
+    """A gear mesh that a linear analysis varies; `on` is `mesh:NAME` of a gear pair, and there is no direction.
+
+    Attributes
+    ----------
+    quantity : {"force", "transmission_error"}
+        What is varied: a force along the line of action [N], or the transmission error [m].
+    """
+
+    quantity: Literal["force", "transmission_error"] = "force"
+
+    @property
+    def pair(self) -> str:
+        """Name of the gear pair."""
+        return self.on.removeprefix(MESH)
+
+    @property
+    def unit(self) -> str:
+        """N, or m of a transmission error."""
+        return "m" if self.quantity == "transmission_error" else "N"
+
+    @property
+    def places(self) -> tuple[str, ...]:
+        """None: the places are those of the gears."""
+        return ()

@@ -457,7 +457,7 @@ def linear_dataset(
     states = [*names, *(f"{name}.rate" for name in names), *(f"film_{index + 1}" for index in range(films))]
     dims = ("frequency", "sensor", "input")
     quantities = [sensor.quantity for sensor in sensors]
-    units = "m, m/s or m/s2 by the sensor's quantity (rad for rotations), per N or N m"
+    units = "m, m/s or m/s2 by the sensor's quantity (rad for rotations), per N, N m or m"
     variables = {
         "response_real": (dims, responses.real, {"units": units, "long_name": "real part of the response"}),
         "response_imaginary": (dims, responses.imag, {"units": units, "long_name": "imaginary part of the response"}),
@@ -474,7 +474,7 @@ def linear_dataset(
         "amplitude": (
             "input",
             [entry.amplitude for entry in inputs],
-            {"units": "N or N m", "long_name": "amplitude in operation"},
+            {"units": "N, N m or m", "long_name": "amplitude in operation"},
         ),
     }
     coordinates = {

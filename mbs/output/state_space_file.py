@@ -109,7 +109,7 @@ def _struct(label: str, result: LinearSystem) -> dict[str, Any]:
         "states": _cells(states),
         "state_units": _cells([*units, *(_RATES[unit] for unit in units), *[_FILM_UNIT] * films]),
         "inputs": _cells([entry.name for entry in scene.inputs]),
-        "input_units": _cells(["N m" if np.any(entry.direction[3:]) else "N" for entry in scene.inputs]),
+        "input_units": _cells(["N m" if entry.unit == "N m" else "N" for entry in scene.inputs]),
         "amplitude": np.array([entry.amplitude for entry in scene.inputs], dtype=float)[:, None],
         "outputs": _cells([sensor.name for sensor in scene.sensors]),
         "output_units": _cells([sensor_unit(sensor) for sensor in scene.sensors]),

@@ -26,7 +26,7 @@ BEARING = ("case", "speed", "bearing")
 RESPONSE = ("case", "speed", "response_frequency", "sensor", "input")
 PEAK = ("case", "speed", "response_peak", "sensor", "input")
 
-RESPONSE_UNITS = "m, m/s or m/s2 by the sensor's quantity (rad for rotations), per N or N m"
+RESPONSE_UNITS = "m, m/s or m/s2 by the sensor's quantity (rad for rotations), per N, N m or m"
 
 
 @dataclass(frozen=True)

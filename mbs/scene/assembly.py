@@ -30,6 +30,7 @@ from mbs.model.turning import TurningLoad
 from mbs.scene import kinds
 from mbs.scene.changes import with_clearance
 from mbs.scene.contact_laws import NO_LAW, ContactLaws, dry_reason, law_in_force, supply_words, surface_label
+from mbs.scene.gears import mesh_input_problems
 from mbs.scene.kinds import ElementKind
 from mbs.scene.map_set import OTHER_OIL, MapSet, again_from_table
 from mbs.scene.oils import oil_warnings
@@ -573,11 +574,13 @@ def _shown(built: Mapping[str, list[Built]], key: str, expected: type[Any]) -> I
 
 def _place_problems(places: Places, scene: Scene) -> list[str]:
     """Places of inputs and sensors that do not exist."""
-    return [
-        f"{word} {entry.name!r}: {found}"
-        for word, entries in (("input", scene.inputs), ("sensor", scene.sensors))
-        for entry in entries
-        for place in (entry.on, entry.against)
+    return mesh_input_problems(scene.inputs, scene.gears) + [
+        f"{word} {name!r}: {found}"
+        for word, name, named in (
+            *(("input", entry.name, entry.places) for entry in scene.inputs),
+            *(("sensor", entry.name, (entry.on, entry.against)) for entry in scene.sensors),
+        )
+        for place in named
         if (found := places.problem(place))
     ]
 
@@ -598,7 +601,7 @@ def _idle_problems(system: System, scene: Scene, turning: Sequence[TurningLoad])
     ]
     for kind, name, direction, on, against in (
         *(("load", load.name, load.force, load.on, load.against) for load in scene.loads),
-        *(("input", entry.name, entry.direction, entry.on, entry.against) for entry in scene.inputs),
+        *(("input", entry.name, entry.direction, entry.on, entry.against) for entry in scene.inputs if entry.places),
         *(("sensor", entry.name, entry.direction, entry.on, entry.against) for entry in scene.sensors),
     ):
         if np.any(direction) and not np.any(direction @ system.relative(on, against)):

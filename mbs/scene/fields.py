@@ -158,8 +158,12 @@ def file_path(section: Table, key: str, folder: Path | None) -> Path | None:
 
 def places(section: Table) -> tuple[str | None, str]:
     """Read on and against."""
-    on = place(section, "on")
-    return on, (place(section, "against") or GROUND) if "against" in section else GROUND
+    return place(section, "on"), against(section)
+
+
+def against(section: Table) -> str:
+    """Read against: the ground where none is stated."""
+    return (place(section, "against") or GROUND) if "against" in section else GROUND
 
 
 def lengths(section: Table, key: str, value: Any) -> tuple[float, float, float] | None:

@@ -5,14 +5,16 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Collection, Iterable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, cast
+
+import numpy as np
 
 from ehdmaps.jobs.table import Table
-from ehdmaps.units import DAMPER, LENGTH, STIFFNESS, Display, short
+from ehdmaps.units import DAMPER, LENGTH, STIFFNESS, Display, closest, short
 from mbs.gears.pair import FEWEST_TEETH, MOST_HARMONICS, MOST_TEETH, STEEPEST, GearPair
-from mbs.model.elements import GROUND
+from mbs.model.elements import GROUND, MESH, Input, MeshInput
 from mbs.scene import fields
-from mbs.scene.fields import DEGREE, MICROMETRE
+from mbs.scene.fields import DEGREE, FORCE, MICROMETRE
 from mbs.scene.specs import BodySpec, FlexibleSpec
 
 if TYPE_CHECKING:
@@ -170,6 +172,47 @@ def _shifts(section: Table) -> tuple[float, ...]:
             return tuple(float(part) for part in numbers)
     section.note("profile_shift", f"got {short(value)}; allowed: x1 and x2, such as [0.3, -0.1], or [x1] alone")
     return ()
+
+
+def read_mesh_input(section: Table, name: str, on: str) -> MeshInput:
+    """Read an input whose place is a gear mesh; problems are noted.
+
+    Parameters
+    ----------
+    section : Table
+        A table [[inputs]].
+    name, on : str
+        Name of the input, and the place `mesh:NAME`.
+    """
+    quantity = section.choice("quantity", ("force", "transmission_error")) or "force"
+    unit, largest, display = ("N", 1e9, FORCE) if quantity == "force" else ("m", 1e-2, MICROMETRE)
+    amplitude = section.quantity("amplitude", unit, 1e-12, largest, display)
+    for key in ("against", "direction"):
+        if key in section:
+            section.get(key)
+            section.note(key, "stands beside a mesh; allowed: nothing, for a mesh has its line of action; delete it")
+    usual = 1.0 if quantity == "force" else 1e-6
+    quantity = cast("Literal['force', 'transmission_error']", quantity)
+    return MeshInput(name, on, np.zeros(6), amplitude=usual if amplitude is None else amplitude, quantity=quantity)
+
+
+def mesh_input_problems(inputs: Iterable[Input], pairs: Iterable[GearPair]) -> list[str]:
+    """Inputs of meshes that the scene has not.
+
+    Parameters
+    ----------
+    inputs : iterable of Input
+        Inputs of the scene.
+    pairs : iterable of GearPair
+        Gear pairs of the scene.
+    """
+    names = tuple(pair.name for pair in pairs)
+    allowed = ", ".join(MESH + name for name in names) or "a place of a body, for there are no gears"
+    return [
+        f"input {entry.name!r}: there is no gear pair {entry.pair!r}{closest(entry.pair, names)}; allowed: {allowed}"
+        for entry in inputs
+        if isinstance(entry, MeshInput) and entry.pair not in names
+    ]
 
 
 def spins_by_teeth(bodies: Sequence[BodySpec], pairs: Iterable[GearPair], typed: Collection[str]) -> list[BodySpec]:

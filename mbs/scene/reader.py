@@ -22,11 +22,11 @@ from ehdmaps.units import DAMPER, RPM, SPRING, TEMPERATURE, Display, closest, sh
 from mbs.gears.pair import GearPair
 from mbs.model.body import FREEDOMS, Inertia
 from mbs.model.drive import Drive, DrivenSpeed, TorqueCurve
-from mbs.model.elements import Input, Load, Sensor, Spring
+from mbs.model.elements import MESH, Input, Load, Sensor, Spring
 from mbs.model.profiles import Constant, Course, Harmonic, LoadProfile, SpeedProfile
 from mbs.scene import fields, kinds
 from mbs.scene.fields import DEGREE, FORCE, HERTZ, LONGEST_FILE, MICROMETRE, MILLISECOND, MOMENT, Built
-from mbs.scene.gears import spins_by_teeth
+from mbs.scene.gears import read_mesh_input, spins_by_teeth
 from mbs.scene.matrices import MatrixSpec, read_spring
 from mbs.scene.scene import Scene
 from mbs.scene.shafts.standing import mounts, read_gravity
@@ -437,7 +437,10 @@ class _Reader:
 
     def _input(self, section: Table, name: str) -> Input | None:
         """Read an input of the linear analysis."""
-        on, against = fields.places(section)
+        on = fields.place(section, "on")
+        if on is not None and on.startswith(MESH):
+            return read_mesh_input(section, name, on)
+        against = fields.against(section)
         direction = fields.direction(section)
         moment = direction is not None and bool(np.any(direction[3:]))
         unit, display = ("N m", MOMENT) if moment else ("N", FORCE)

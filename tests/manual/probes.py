@@ -166,6 +166,13 @@ direction = "y"
 [[inputs]]
 name = "NAME"
 direction = "theta_x"
+[[inputs]]
+name = "NAME"
+on = "mesh:NAME"
+[[inputs]]
+name = "NAME"
+on = "mesh:NAME"
+quantity = "transmission_error"
 [[sensors]]
 name = "NAME"
 against = "NAME"

@@ -213,11 +213,16 @@ stiffness = "1e8 N/m"
 name = "hit"
 on = "disc"
 direction = "y"
+[[inputs]]
+name = "teeth"
+on = "mesh:mesh"
 [[sensors]]
 name = "S1"
 on = "disc"
 direction = "y"
 quantity = "acceleration"
+[linear]
+frequencies = { from = "1 Hz", to = "9 Hz", points = 3 }
 [runup]
 from = "0 rpm"
 to = "900 rpm"
@@ -242,6 +247,7 @@ PLACES = {
 OTHERS = {
     ("[[bearings]]", "expansion"): ("bearings", 1),
     ("[[flexible]]", "units"): ("flexible", 1),
+    ("[[inputs]]", "quantity"): ("inputs", 1),
     ("[[loads]]", "force"): ("loads", 1),
     ("[[excitations]]", "force"): ("excitations", 1),
 }
