@@ -192,9 +192,7 @@ def made_map(name: str, text: str, statuses: tuple[int, ...] = (0,)) -> str:
 @pytest.fixture(scope="session")
 def formula_maps() -> dict[str, str]:
     """Files of small maps by the film formula, by the name of the bearing."""
-    return {
-        name: made_map(name, map_job(*WIDE_AXES, bearing=name), statuses=(0, 1)) for name in ("NU308", "N1014")
-    }
+    return {name: made_map(name, map_job(*WIDE_AXES, bearing=name), statuses=(0, 1)) for name in ("NU308", "N1014")}
 
 
 @pytest.fixture(scope="session")
