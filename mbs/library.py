@@ -10,14 +10,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ehdmaps.errors import InputError
-from mbs.bearings.contact_report import BearingPoint
 from mbs.output.files import described
-from mbs.output.one_bearing.cylindrical import CYLINDRICAL
 from mbs.output.one_bearing.files import point_dataset
-from mbs.output.one_bearing.kind import Description
+from mbs.output.one_bearing.kind import Description, Kind
 from mbs.output.one_bearing.table import point_text
 from mbs.scene.assembly import Model
 from mbs.scene.choices import OPTIONS
@@ -37,30 +35,33 @@ class BearingResult:
 
     Attributes
     ----------
+    kind : Kind
+        Kind of the bearing: names and units of what its points have.
     description : Description
         What was asked, and what was assumed, in words.
-    points : list of list of BearingPoint
+    points : list of list of BearingPoint or LocatingPoint
         Points by load, then by speed.
     """
 
+    kind: Kind
     description: Description
-    points: list[list[BearingPoint]]
+    points: list[list[Any]]
 
     @property
     def text(self) -> str:
         """Lines that `mbs bearing` prints."""
-        return "\n".join(point_text(CYLINDRICAL, self.description, self.points))
+        return "\n".join(point_text(self.kind, self.description, self.points))
 
     @cached_property
     def dataset(self) -> xr.Dataset:
         """Data set that `mbs bearing -o` writes; made when it is asked for."""
-        return point_dataset(CYLINDRICAL, self.description, self.points)
+        return point_dataset(self.kind, self.description, self.points)
 
     def plot(self) -> Figure:
         """Figure that `mbs bearing --plot` writes."""
         from mbs.output.bearing_plot import bearing_figure
 
-        return bearing_figure(CYLINDRICAL, self.description, self.points)
+        return bearing_figure(self.kind, self.description, self.points)
 
 
 def bearing(
@@ -68,6 +69,9 @@ def bearing(
     load: str | Sequence[str],
     speed: str | Sequence[str],
     *,
+    axial: str | None = None,
+    outer_speed: str | None = None,
+    tilts: bool = False,
     direction: str = "0 deg",
     oil: str | None = None,
     profile: str = "iso",
@@ -75,14 +79,18 @@ def bearing(
     coupled: bool = False,
     choices: dict[str, str] | None = None,
 ) -> BearingResult:
-    """Stiffness, damping, roller loads, pressures and films of one bearing, as `mbs bearing` finds them.
+    """Stiffness, damping, loads, pressures and films of one bearing of any kind, as `mbs bearing` finds them.
 
     Parameters
     ----------
     name : str
-        N1014, NU308, or a file with [bearing].
+        A designation such as NU308, 6208 or 32208, or a file with [bearing] of cylindrical rollers.
     load, speed : str or sequence of str
-        Loads on the inner ring, such as "5 kN", and its speeds, such as "1500 rpm".
+        Radial loads on the inner ring, such as "5 kN", and its speeds, such as "1500 rpm".
+    axial, outer_speed : str, optional
+        Axial load on the inner ring, and speed of the outer one, of balls, tapered rollers, NJ and NUP.
+    tilts : bool
+        Whether the inner ring of such a bearing tilts freely.
     direction : str
         Direction of the load from y, where a roller is, towards z.
     oil : str, optional
@@ -108,14 +116,21 @@ def bearing(
     >>> found = bearing("NU308", "5 kN", "0 rpm", choices={"law": "hertz"})
     >>> found.dataset.sizes["load"]
     1
+    >>> point = bearing("7208B", "1 kN", "0 rpm", axial="1 kN", choices={"law": "hertz"}).points[0][0]
+    >>> point.stiffness.shape
+    (6, 6)
     """
-    from mbs.commands.one_bearing.cylindrical import read_request
+    from mbs.commands.bearing import family_of
+    from mbs.commands.one_bearing.request import points_of, read_request
 
     given = dict(choices or {})
     arguments = argparse.Namespace(
         bearing=name,
         load=[[text] for text in _texts(load)],
         speed=[[text] for text in _texts(speed)],
+        axial=axial,
+        outer_speed=outer_speed,
+        tilts=tilts,
         direction=[direction],
         inner_ring_temperature=None,
         outer_ring_temperature=None,
@@ -130,8 +145,9 @@ def bearing(
     if given:
         allowed = ", ".join(choice.name for choice in OPTIONS)
         raise InputError(f"bearing, choices: got {', '.join(map(repr, given))}; allowed: {allowed}")
-    request = read_request(arguments)
-    return BearingResult(request.description, request.points())
+    family = family_of(name, axial)
+    request = read_request(arguments, family)
+    return BearingResult(family.kind, request.description, points_of(request))
 
 
 @dataclass(frozen=True, eq=False)

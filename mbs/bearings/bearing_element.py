@@ -65,6 +65,11 @@ class RingElement(OnRings):
     films: Films = "slow"
 
     @property
+    def relaxes(self) -> bool:
+        """See `OnRings.relaxes`."""
+        return self.films == "memory"
+
+    @property
     def flat_laws(self) -> tuple[FlatLaw, ...]:
         """Law of each side of its contacts: of both in series, or of the inner and the outer one; none if unknown."""
         return ()
@@ -144,7 +149,7 @@ class RingElement(OnRings):
             return None
         from mbs.bearings.slices_in_balance import slices_in_balance
 
-        return slices_in_balance(sides, relaxes=self.films == "memory")
+        return slices_in_balance(sides, relaxes=self.relaxes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -319,10 +324,6 @@ class BearingElement(RingElement):
             contacts = bearing_contacts(dry, *at)
         ring_speed = (self.inner_spin - self.outer_spin) * operation.speed
         return contacts, rolling_loss(self.bearing, source, contacts, rollers, u, ring_speed, *at[2:])
-
-    def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
-        """Relaxation of the films, where they relax, see `Element.relaxation`."""
-        return self.film_relaxation(displacement, operation) if self.films == "memory" else None
 
     def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
         """See `OnRings.film_relaxation`; with centrifugal load the times are those without it, as an estimate."""

@@ -17,7 +17,6 @@ bearing.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -37,12 +36,12 @@ from mbs.bearings.force_at_point import (
     raise_state,
     six_numbers,
 )
-from mbs.bearings.laws import DryLaw, FlatLaw, Law
+from mbs.bearings.laws import DryLaw, FlatLaw, Law, law_problems
 from mbs.model.elements import Forces
 
 if TYPE_CHECKING:
     from ehdmaps.maps.kernels.memory import FilmState
-    from ehdmaps.maps.law import ContactLaw, LawAtPoint
+    from ehdmaps.maps.law import LawAtPoint
 
 
 class ForceInTime:
@@ -106,8 +105,6 @@ class ForceInTime:
 
 
 NO_COUPLED_MEMORY = "got coupled slices with films that have a memory; allowed: slow films, or slices on their own"
-
-_ALIKE = 1e-6
 
 
 class BearingForce:
@@ -412,37 +409,6 @@ class BearingForce:
             lambda pose, velocity: point(pose, velocity, cage_angle), inner, outer, outer_spin, outer_spin_rate
         )
 
-    def rolling_average(
-        self,
-        pose: npt.ArrayLike,
-        velocity: npt.ArrayLike | None = None,
-        *,
-        angles: int = 32,
-        entrainment_speed: float = math.nan,
-        temperature: float = math.nan,
-        centrifugal_load: float = 0.0,
-    ) -> Triple:
-        """Mean of force, stiffness and damping over the rolling of the cage by one roller, at a fixed pose.
-
-        Parameters
-        ----------
-        pose, velocity : array (6,)
-            Pose and velocity of the inner ring in O [m], [rad], [m/s], [rad/s]; at rest if there is no velocity.
-        angles : int
-            Number of cage angles, evenly spaced over a pitch.
-        entrainment_speed, temperature : float
-            u [m/s] and T [K]; a map's law needs them.
-        centrifugal_load : float
-            Centrifugal load of a roller [N/m]; for a map's law only.
-        """
-        if not isinstance(angles, int) or angles < 1:
-            raise InputError(f"bearing force, angles: got {angles!r}; allowed: a whole number >= 1")
-        point = self._prepared(entrainment_speed, temperature, centrifugal_load)
-        pitch = 2.0 * math.pi / self.bearing.geometry.rollers
-        parts = [point(pose, velocity, pitch * i / angles) for i in range(angles)]
-        f, K, C = (np.asarray(np.mean(part, axis=0)) for part in zip(*parts, strict=True))
-        return f, K, C
-
     def _prepared(self, entrainment_speed: float, temperature: float, centrifugal_load: float) -> ForceAtPoint:
         """The element at this point: the one of the last call, or a new law in its place."""
         current = self._current
@@ -459,46 +425,11 @@ class BearingForce:
 
 def _check_law(law: Law, bearing: Bearing, outside: str | None) -> None:
     """Refuse a law that does not belong to the bearing."""
-    if isinstance(law, DryLaw):
-        if law.kind != "series":
-            raise InputError(
-                f"bearing force, law {law.name!r}: got the law of a single contact; allowed: that of a roller between "
-                "both raceways; leave out `single()`"
-            )
-        return
-    from ehdmaps.maps.law import ContactLaw  # it is loaded already, if the law is one
-
-    if not isinstance(law, ContactLaw):
-        raise InputError(
-            f"bearing force, law: got {type(law).__name__}; allowed: a law of mbs.bearings.laws, or the law 'series' "
-            "of a map"
-        )
-    problems: list[str] = []
-    if law.kind != "series":
-        problems.append(f"bearing force, law: got the law {law.kind!r}; allowed: 'series', both contacts of a roller")
-    else:
-        problems += _other_geometry(law, bearing)
-    if outside is not None and outside != law.outside:
+    problems = law_problems("bearing force, law", law, bearing, "series")
+    if outside is not None and not (problems or isinstance(law, DryLaw)) and outside != law.outside:
         problems.append(
             f"bearing force, outside: got {outside!r} with a law made with {law.outside!r}; allowed: what the law has; "
             f"make it by emap.law('series', outside={outside!r})"
         )
     if problems:
         raise InputError(problems)
-
-
-def _other_geometry(law: ContactLaw, bearing: Bearing) -> Sequence[str]:
-    """In what the contacts of a law are not those of the bearing."""
-    geometry = bearing.geometry
-    problems = []
-    for contact, radius in zip(law.contacts, (geometry.inner_radius, geometry.outer_radius), strict=True):
-        for name, got, wanted in (
-            ("radius", contact.radius, radius),
-            ("roller_length", contact.roller_length, geometry.roller_length),
-        ):
-            if got is not None and abs(got - wanted) > _ALIKE * wanted:
-                problems.append(
-                    f"bearing force, law, contact {contact.name!r}, {name}: got {got:.6g} m; the bearing "
-                    f"{geometry.name!r} has {wanted:.6g} m; take a map made for this bearing"
-                )
-    return problems

@@ -405,10 +405,6 @@ def loss_of(power: FloatArray, load: FloatArray, ring_speed: float, slowest: flo
     return RollingLoss(power, abs(ring_speed), idle, slowest)
 
 
-SHARE = 0.01
-"""A roller counts as loaded if it carries more than this part of the highest roller load: films load all a little."""
-
-
 @dataclass(frozen=True, eq=False)
 class BearingPoint(WithFindings):
     """A bearing in equilibrium.
@@ -490,8 +486,8 @@ class BearingPoint(WithFindings):
 
     @property
     def loaded(self) -> int:
-        """Number of rollers that carry more than `SHARE` of the highest roller load."""
-        return int(self.elements.load_zone(SHARE).size)
+        """Number of rollers that carry more than 1 % of the highest roller load."""
+        return self.elements.loaded
 
     @property
     def most_loaded(self) -> int:

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import AnalysisError, InputError, MapError, OutsideMapError
+from ehdmaps.errors import AnalysisError, InputError, OutsideMapError
 from ehdmaps.maps.kernels.tables import POWER_LAW
 from mbs.bearings import cylinder as table
 from mbs.bearings.bearing import Bearing
@@ -32,9 +32,9 @@ from mbs.bearings.cylinder import (
 )
 from mbs.bearings.laws import DryLaw, FlatLaw, Law, unilateral_forces
 from mbs.model.elements import Forces
+from mbs.model.findings import CARRIES
 
 if TYPE_CHECKING:
-    from ehdmaps.maps.emap import EHDMap
     from ehdmaps.maps.law import ContactLaw
     from ehdmaps.physics.bearing import BearingGeometry
     from mbs.life import ReferenceLife
@@ -71,9 +71,10 @@ class RollerLoads:
     approach: FloatArray
     position: FloatArray
 
-    def load_zone(self, share: float = 0.0) -> FloatArray:
-        """Angles of the rollers that carry more than a share of the highest roller load, sorted [rad]."""
-        return np.sort(self.angle[self.load > share * float(np.max(self.load))])
+    @property
+    def loaded(self) -> int:
+        """Number of rollers that carry more than 1 % of the highest roller load: films load all a little."""
+        return int(np.count_nonzero(self.load > CARRIES * self.load.max()))
 
     def life(self, geometry: BearingGeometry, inner_turns: bool) -> ReferenceLife:
         """Equivalent load and life of ISO/TS 16281, by the rating of ISO 281.
@@ -91,68 +92,6 @@ class RollerLoads:
         slices = self.load_per_length * geometry.roller_length / self.position.size
         rating = cylindrical_ratings(geometry)[0]
         return roller_reference_life(np.stack([slices, slices]), rating, geometry.gamma, 0.0, inner_turns=inner_turns)
-
-    def films(
-        self,
-        emap: EHDMap,
-        entrainment_speed: float,
-        temperature: float,
-        centrifugal_load: float = 0.0,
-        variable: str = "central_film",
-    ) -> FloatArray:
-        """Film of each roller at the inner and the outer race, (Z, 2) [m], at its mean load per length.
-
-        It is read from the map between its points, linearly in the logarithms; NaN for a load, speed or temperature
-        outside the map, so for unloaded rollers too.
-
-        Parameters
-        ----------
-        emap : EHDMap
-            Map of this bearing.
-        entrainment_speed, temperature, centrifugal_load : float
-            u [m/s], T [K], q [N/m].
-        variable : {"central_film", "minimum_film"}
-            Which film.
-
-        Raises
-        ------
-        InputError
-            For another variable.
-        MapError
-            For a map without the contacts of a roller.
-        """
-        from scipy.interpolate import RegularGridInterpolator  # films of a map alone need it
-
-        if variable not in ("central_film", "minimum_film"):
-            raise InputError(f"rollers, film: got {variable!r}; allowed: central_film, minimum_film")
-        if emap.bearing is None:
-            raise MapError("rollers, film: got the map of a bare contact; allowed: a map of the bearing")
-        mean = np.mean(self.load_per_length, axis=1)
-        out = np.full((mean.size, 2), np.nan)
-        data = emap.dataset[variable].transpose("contact", "load", "entrainment_speed", "temperature")
-        data = data.sel(entrainment_speed=data["entrainment_speed"] > 0.0)
-        axes = (np.log(data["load"].values), np.log(data["entrainment_speed"].values), data["temperature"].values)
-        size = abs(entrainment_speed)
-        for i, contact in enumerate(("inner", "outer")):
-            loads = mean + (centrifugal_load if contact == "outer" else 0.0)
-            loaded = loads > 0.0
-            if size == 0.0 or not np.any(loaded):
-                continue
-            kept = tuple(axis.size > 1 for axis in axes)
-            with np.errstate(divide="ignore"):
-                values = np.log(data.sel(contact=contact).values)
-            places = np.stack(
-                [np.log(loads[loaded]), np.full(loaded.sum(), math.log(size)), np.full(loaded.sum(), temperature)],
-                axis=1,
-            )
-            log_film = RegularGridInterpolator(
-                tuple(axis for axis, keep in zip(axes, kept, strict=True) if keep), values.squeeze(), bounds_error=False
-            )(places[:, kept])
-            for axis, keep, place in zip(axes, kept, places.T, strict=True):
-                if not keep:
-                    log_film = np.where(np.abs(place - axis[0]) < 1e-9 * max(1.0, abs(axis[0])), log_film, np.nan)
-            out[loaded, i] = np.exp(log_film)
-        return out
 
 
 def roller_loads(
@@ -360,11 +299,6 @@ class ForceAtPoint:
         """Approaches at which the cells of a faded film begin [m], (2 ROWS,); None of other laws."""
         knots: FloatArray | None = self._work.law.given("knots")
         return knots
-
-    @property
-    def tabulated(self) -> bool:
-        """True where numbers and cells hold the law; else it is called for each slice, or slices are coupled."""
-        return bool(self.numbers[_KIND] != table.BY_SLICES) and self._work.coupling is None
 
     @property
     def outside(self) -> bool:

@@ -554,6 +554,56 @@ def curve_problems(approach: FloatArray, load: FloatArray, damping: FloatArray) 
     return problems
 
 
+_ALIKE = 1e-6
+"""Part by which lengths of a law may differ from those of its bearing."""
+
+
+def law_problems(where: str, law: Law, bearing: Bearing, kind: LawKind) -> list[str]:
+    """List why a law is not that of the contacts of a bearing.
+
+    Parameters
+    ----------
+    where : str
+        What takes the law; begins the messages.
+    law : Law
+        The law.
+    bearing : Bearing
+        The bearing.
+    kind : {"series", "inner", "outer"}
+        Both contacts of a roller, or one.
+    """
+    if isinstance(law, DryLaw):
+        wanted = "series" if kind == "series" else "single"
+        got = {
+            "series": "got the law of a single contact; allowed: that of a roller between both raceways; leave out "
+            "`single()`",
+            "single": f"got the law {law.name!r} of a whole roller; allowed: that of one contact; use `single()`",
+        }[wanted]
+        return [] if law.kind == wanted else [f"{where}: {got}"]
+    from ehdmaps.maps.law import ContactLaw  # it is loaded already, if the law is one
+
+    if not isinstance(law, ContactLaw):
+        return [f"{where}: got {type(law).__name__}; allowed: a law of mbs.bearings.laws, or the law {kind!r} of a map"]
+    if law.kind != kind:
+        return [f"{where}: got the law {law.kind!r}; allowed: {kind!r}"]
+    geometry = bearing.geometry
+    radii = {"inner": geometry.inner_radius, "outer": geometry.outer_radius}
+    pairs = (
+        (contact.name, name, got, wanted)
+        for contact in law.contacts
+        for name, got, wanted in (
+            ("radius", contact.radius, radii[contact.name]),
+            ("roller_length", contact.roller_length, geometry.roller_length),
+        )
+    )
+    return [
+        f"{where}, contact {contact!r}, {name}: got {got:.6g} m; the bearing {geometry.name!r} has {wanted:.6g} m; "
+        "take a map made for it"
+        for contact, name, got, wanted in pairs
+        if got is not None and abs(got - wanted) > _ALIKE * wanted
+    ]
+
+
 class FlatLaw:
     """A law, and its data for C.
 

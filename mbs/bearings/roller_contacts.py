@@ -19,7 +19,7 @@ import numpy.typing as npt
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, OutsideMapError, SolverError
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.laws import DryLaw, FlatLaw, Law
+from mbs.bearings.laws import DryLaw, FlatLaw, Law, law_problems
 from mbs.bearings.slices_in_balance import Side
 from mbs.model.elements import Forces
 
@@ -31,8 +31,6 @@ if TYPE_CHECKING:
 _STEPS = 100
 AT_REST = 1e6
 """A step so long that films are in equilibrium at its end [s]."""
-
-_ALIKE = 1e-6
 
 
 class RollerContacts:
@@ -56,7 +54,9 @@ class RollerContacts:
     """
 
     def __init__(self, bearing: Bearing, inner: Law, outer: Law) -> None:
-        problems = _law_problems(bearing, "inner", inner) + _law_problems(bearing, "outer", outer)
+        where = "roller contacts, law of the {} contact"
+        problems = law_problems(where.format("inner"), inner, bearing, "inner")
+        problems += law_problems(where.format("outer"), outer, bearing, "outer")
         if problems:
             raise InputError(problems)
         self.bearing = bearing
@@ -353,30 +353,3 @@ class RollerContacts:
         if not np.all(np.isfinite(values)):
             raise InputError(f"roller contacts, {name}: got {values.tolist()}; allowed: finite numbers")
         return values
-
-
-def _law_problems(bearing: Bearing, side: str, law: Law) -> list[str]:
-    """List why a law is none of this contact."""
-    where, geometry = f"roller contacts, law of the {side} contact", bearing.geometry
-    if isinstance(law, DryLaw):
-        if law.kind != "single":
-            return [
-                f"{where}: got the law {law.name!r} of a whole roller; allowed: that of one contact; use `single()`"
-            ]
-        return []
-    from ehdmaps.maps.law import ContactLaw  # it is loaded already, if the law is one
-
-    if not isinstance(law, ContactLaw):
-        return [f"{where}: got {type(law).__name__}; allowed: a law of mbs.bearings.laws, or the law {side!r} of a map"]
-    if law.kind != side:
-        return [f"{where}: got the law {law.kind!r}; allowed: {side!r}"]
-    radius = geometry.inner_radius if side == "inner" else geometry.outer_radius
-    pairs = (
-        ("radius", law.contacts[0].radius, radius),
-        ("roller_length", law.contacts[0].roller_length, geometry.roller_length),
-    )
-    return [
-        f"{where}, {name}: got {got:.6g} m; the bearing {geometry.name!r} has {wanted:.6g} m; take a map made for it"
-        for name, got, wanted in pairs
-        if got is not None and abs(got - wanted) > _ALIKE * wanted
-    ]

@@ -120,10 +120,6 @@ class RollerElement(RingElement):
         """See `OnRings.gauge`: that of rollers that follow in equilibrium."""
         return self.plain.gauge(ring_motion(displacement), operation)
 
-    def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
-        """Relaxation of the films of both contacts, where they relax, see `Element.relaxation`."""
-        return self.film_relaxation(displacement, operation) if self.films == "memory" else None
-
     def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
         """See `OnRings.film_relaxation`."""
         sides = self.sides(displacement, operation)

@@ -5,15 +5,13 @@ from __future__ import annotations
 import argparse
 import os
 import re
-from typing import Any
 
 from ehdmaps.errors import InputError
 from ehdmaps.outputs import write_figure
 from ehdmaps.physics.designations.families import not_served
 from mbs.commands.common import with_bands
 from mbs.commands.one_bearing.bands import point_lines
-from mbs.commands.one_bearing.cylindrical import read_request
-from mbs.output.one_bearing.cylindrical import CYLINDRICAL
+from mbs.commands.one_bearing.family import Family
 from mbs.output.one_bearing.kind import Description, Kind, Points
 from mbs.output.one_bearing.table import point_text
 
@@ -32,51 +30,52 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     banded = with_bands(arguments, asked)
     if asked:
         raise InputError(asked)
-    family = _family(arguments)
-    if family is None:
-        cylinders = read_request(arguments)
-        kind, description, points = CYLINDRICAL, cylinders.description, cylinders.points()
-        bands = cylinders.bands(points) if banded else {}
-        told = point_lines(bands, cylinders.scene) if bands else []
-        lines = point_text(kind, description, points, [*cylinders.beside(points), *told])
-        if arguments.output:
-            from mbs.output.one_bearing.files import write_points
+    from mbs.commands.one_bearing import request as one  # with what its refusals do not need
 
-            lines.append(write_points(kind, description, points, arguments.output, bands))
-    else:
-        from mbs.commands.one_bearing import rolling  # with kernels that others do not need
-
-        request = rolling.read_request(arguments, family)
-        kind, description, points = family.kind, request.description, rolling.points_of(request)
-        bands = rolling.bands_of(request, points) if banded else {}
-        lines = point_text(kind, description, points, point_lines(bands, rolling.scene_as(request)) if bands else ())
-        if arguments.output:
-            lines.append(rolling.write_file(arguments.output, request, points, bands))
+    family = family_of(arguments.bearing, arguments.axial)
+    request = one.read_request(arguments, family)
+    kind, description, points = family.kind, request.description, one.points_of(request)
+    bands = one.bands_of(request, points) if banded else {}
+    told = point_lines(bands, one.scene_as(request)) if bands else []
+    lines = point_text(kind, description, points, [*family.beside(request, points), *told])
+    if arguments.output:
+        lines.append(one.write_file(arguments.output, request, points, bands))
     if arguments.plot:
         lines.append(_drawn(arguments.plot, kind, description, points))
     return "\n".join(lines), 1 if any(point.problems for row in points for point in row) else 0
 
 
-def _family(arguments: argparse.Namespace) -> Any:
-    """Row of a bearing that carries axial load, by its designation; None of cylindrical rollers, and of files."""
-    name = arguments.bearing
-    if os.path.isfile(name):
-        return None
-    if _BALLS.match(name):
-        from mbs.commands.one_bearing.balls import BALL_BEARINGS
+def family_of(name: str, axial: str | None) -> Family:
+    """Row of a bearing, by its designation; that of cylindrical rollers of files, too.
 
-        return BALL_BEARINGS
-    if words := not_served(name):
-        raise InputError(f"BEARING: {words}")
-    if arguments.axial is None and not _TAPERED.match(name):
-        return None
-    from ehdmaps.physics.rollers.ribbed_geometry import ribbed_way
+    Parameters
+    ----------
+    name : str
+        Designation, or a file.
+    axial : str or None
+        Axial load as it was typed, which ribs carry.
+    """
+    if not os.path.isfile(name):
+        if _BALLS.match(name):
+            from mbs.commands.one_bearing.balls import BALL_BEARINGS
 
-    if not (_TAPERED.match(name) or ribbed_way(name)):
-        return None
-    from mbs.commands.one_bearing.ribs import RIBBED_BEARINGS, TAPERED_BEARINGS
+            return BALL_BEARINGS
+        if words := not_served(name):
+            raise InputError(f"BEARING: {words}")
+        if _TAPERED.match(name):
+            from mbs.commands.one_bearing.ribs import TAPERED_BEARINGS
 
-    return RIBBED_BEARINGS if ribbed_way(name) else TAPERED_BEARINGS
+            return TAPERED_BEARINGS
+        if axial is not None:
+            from ehdmaps.physics.rollers.ribbed_geometry import ribbed_way
+
+            if ribbed_way(name):
+                from mbs.commands.one_bearing.ribs import RIBBED_BEARINGS
+
+                return RIBBED_BEARINGS
+    from mbs.commands.one_bearing.cylindrical import CYLINDERS
+
+    return CYLINDERS
 
 
 def _drawn(path: str, kind: Kind, description: Description, points: Points) -> str:

@@ -18,15 +18,16 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.exports.target import BEARING_AXES, Target, origin
-from ehdmaps.maps.emap import EHDMap, open_map
+from ehdmaps.maps.emap import EHDMap
 from ehdmaps.outputs import Output, check_outputs, write_text
 from ehdmaps.units import RPM, TEMPERATURE, Display, quantity
 from mbs.analyses.bearing_point import RING, ring_at_rest
 from mbs.analyses.film_errors import film_error
 from mbs.bearings.bearing_element import BearingElement
-from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import axes_left
-from mbs.commands.one_bearing.cylindrical import BearingRequest, read_request
+from mbs.commands.one_bearing.cylindrical import CYLINDERS
+from mbs.commands.one_bearing.family import Request
+from mbs.commands.one_bearing.request import read_request
 from mbs.commands.one_bearing.shared import read_values
 from mbs.exports.linear_bearing import Format, LinearBearing
 from mbs.linearised.bands import law_bands
@@ -57,7 +58,7 @@ class LinearTable(LinearBearing):
 
     Attributes
     ----------
-    request : BearingRequest
+    request : Request
         What was asked: bearing, map, load, temperature.
     cage_angle : float
         Angle of the first roller from y towards z [rad].
@@ -72,7 +73,7 @@ class LinearTable(LinearBearing):
         Answer of the films over frequency along the load at each speed, and its error; empty at rest.
     """
 
-    request: BearingRequest
+    request: Request
     cage_angle: float
     films: Films
     displacement: FloatArray
@@ -87,15 +88,14 @@ class LinearTable(LinearBearing):
         path : Path
             File of the map.
         """
-        request = self.request
-        bearing, emap = request.bearing, request.emap
-        direction = math.degrees(math.atan2(request.direction[1], request.direction[0]))
+        request, told = self.request, self.request.description
+        bearing, emap = request.force.bearing, request.asked.emap
         point = (
             f"bearing: {self.name}, {bearing.slices} slices",
-            f"linear around: load {FORCE.text(request.loads[0])} on the inner ring, "
-            f"{direction:.6g} deg from y towards z; "
+            f"linear around: load {FORCE.text(request.operating.loads[0])} on the inner ring, "
+            f"{told.direction:.6g} deg from y towards z; "
             f"diametral clearance {MICROMETRE.text(bearing.geometry.diametral_clearance)}; "
-            f"cage angle {math.degrees(self.cage_angle):.6g} deg; raceways at {TEMPERATURE.text(request.temperature)}",
+            f"cage angle {math.degrees(self.cage_angle):.6g} deg; raceways at {TEMPERATURE.text(told.temperature)}",
             f"speeds of the inner ring: {', '.join(RPM.text(speed) for speed in self.speeds)}; the outer ring stands",
             f"frequencies: {', '.join(HERTZ.text(value) for value in self.frequencies)}; {self._motion}",
         )
@@ -197,22 +197,21 @@ def linear_table(path: Path, arguments: argparse.Namespace) -> LinearTable:
     """
     request, frequencies, cage_angle = _read(path, arguments)
     films: Films = arguments.films
-    emap = request.emap or open_map(path)
-    law = emap.law("series", outside="clamp", supply=request.supply, surface=request.surface)
-    force = BearingForce(request.bearing, law)
+    force, temperature, speeds = request.force, request.description.temperature, request.operating.speeds
     element = BearingElement(
-        "bearing", RING, "ground", request.bearing, force, request.temperature, start_angle=cage_angle, films=films
+        "bearing", RING, "ground", force.bearing, force, temperature, start_angle=cage_angle, films=films
     )
+    load = [request.operating.loads[0] * part for part in request.operating.way]
     omega = 2.0 * np.pi * np.array(frequencies)
     s = np.asarray(1j * omega, dtype=np.complex128)
     displacement, stiffness, damping, outside, bands = [], [], [], [], []
     film_errors: list[FilmError] = []
-    for speed in request.speeds:
+    for speed in speeds:
         operation = Operation(speed)
-        balance = ring_at_rest(element, request.load_vectors[0], operation)
+        balance = ring_at_rest(element, load, operation)
         place = np.array([0.0, *balance.displacement, 0.0, 0.0, 0.0])
         highest = float(element.loads(place, operation).load_per_length.max())
-        outside += axes_left(law, highest, element.entrainment_speed(operation), request.temperature)
+        outside += axes_left(force.law, highest, element.entrainment_speed(operation), temperature)
         slow = omega == 0.0
         dynamic = element_dynamic_stiffness(balance, 0, s)
         rate = dynamic.imag / np.where(slow, 1.0, omega)[:, None, None]
@@ -230,17 +229,17 @@ def linear_table(path: Path, arguments: argparse.Namespace) -> LinearTable:
             ]
         )
     return LinearTable(
-        name=request.bearing.geometry.name,
+        name=force.bearing.geometry.name,
         request=request,
         cage_angle=cage_angle,
         films=films,
-        speeds=np.array(request.speeds),
+        speeds=np.array(speeds),
         frequencies=np.array(frequencies),
         displacement=np.array(displacement),
         stiffness=np.array(stiffness),
         damping=np.array(damping),
         bands=np.array(bands),
-        film_errors=tuple(film_errors) if len(film_errors) == len(request.speeds) else (),
+        film_errors=tuple(film_errors) if len(film_errors) == len(speeds) else (),
     )
 
 
@@ -252,7 +251,7 @@ def _relative_bands(balance: Equilibrium, error: FilmError | None) -> FloatArray
     return np.asarray(bands.of_bearings()[:, 0] / np.array([error.stiffness, error.damping]))
 
 
-def _read(path: Path, arguments: argparse.Namespace) -> tuple[BearingRequest, tuple[float, ...], float]:
+def _read(path: Path, arguments: argparse.Namespace) -> tuple[Request, tuple[float, ...], float]:
     """Read the options with every problem: the request of `mbs bearing`, frequencies [Hz], cage angle [rad]."""
     problems: list[str] = []
     frequencies = read_values("--frequency", arguments.frequency or [["0 Hz"]], "Hz", FREQUENCIES, HERTZ, problems)
@@ -283,7 +282,7 @@ def _read(path: Path, arguments: argparse.Namespace) -> tuple[BearingRequest, tu
         }
     )
     try:
-        request = read_request(bearing_arguments)
+        request = read_request(bearing_arguments, CYLINDERS)
     except InputError as error:
         problems += error.problems
     if problems:

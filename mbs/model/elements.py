@@ -290,6 +290,11 @@ class OnRings(ElementDefaults):
             """Name of the element."""
 
     @property
+    def relaxes(self) -> bool:
+        """Whether its films have a memory."""
+        return False
+
+    @property
     def entrainment_rate(self) -> float:
         """Entrainment speed of its contacts by the speed of the system [m]; 0 where nothing rolls, or none is known."""
         return 0.0
@@ -420,6 +425,10 @@ class OnRings(ElementDefaults):
             The same as of `small_motions`.
         """
         return None
+
+    def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """Relaxation of its films, where they relax, see `Element.relaxation`."""
+        return self.film_relaxation(displacement, operation) if self.relaxes else None
 
 
 def check_apart(name: str, pose: FloatArray, most: tuple[float, float], time: float, *, beyond: bool = False) -> None:

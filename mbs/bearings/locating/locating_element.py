@@ -235,7 +235,7 @@ class LocatingElement(OnRings):
 
     @property
     def relaxes(self) -> bool:
-        """Tell whether its films have a memory."""
+        """See `OnRings.relaxes`."""
         return self.memory == "memory" and self.films is not None
 
     def law_at(self, speed: float) -> Any:
@@ -329,10 +329,6 @@ class LocatingElement(OnRings):
     def largest_load(self, displacement: FloatArray, operation: Operation) -> float:
         """See `OnRings.largest_load`."""
         return float(self.settled(displacement, operation).loads.largest)
-
-    def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
-        """Relaxation of the films of all contacts, where they relax, see `Element.relaxation`."""
-        return self.film_relaxation(displacement, operation) if self.relaxes else None
 
     def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
         """See `OnRings.film_relaxation`; where nothing rolls, contacts have springs without stiffness."""

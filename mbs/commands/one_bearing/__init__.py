@@ -1,11 +1,11 @@
-"""`mbs bearing`: one bearing without a scene.
+"""`mbs bearing`: one bearing without a scene, of any family.
 
-===================  =================================================================================
-shared               loads, speeds and choices, refusals, damper, oil, surfaces; every problem noted
-cylindrical          cylindrical rollers and needles: a designation or a file, maps and films
-family               what differs between bearings that carry axial load: a row each
-balls, ribs          the rows: ball bearings; tapered rollers, NJ and NUP
-rolling              their request, points and files
-files, linear_files  files for other programs
-===================  =================================================================================
+========================  ============================================================================
+family                    what differs between families of bearings, a row each; what is asked of one
+cylindrical, balls, ribs  the rows: cylindrical rollers and needles; ball bearings; tapered, NJ, NUP
+shared                    options of all: loads, speeds, choices, law, oil; every problem noted
+request                   the request of any family, its points and files
+bands                     what is not known of a point
+files, linear_files       files for other programs
+========================  ============================================================================
 """

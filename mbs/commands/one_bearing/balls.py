@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ehdmaps.errors import AnalysisError, InputError, SolverError
-from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.oil_supply import PLAIN, FilmConditions
+from ehdmaps.physics.oil_supply import PLAIN
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.program import tell
@@ -20,9 +19,10 @@ from mbs.bearings.balls.ball_point import BallPoint, ball_dynamic_stiffness
 from mbs.bearings.balls.laws import BallLaw, dry_law
 from mbs.commands.one_bearing.family import Asked, AtSpeed, Family, Request
 from mbs.commands.one_bearing.linear_files import Oscillating
+from mbs.commands.one_bearing.shared import assumed_clearance
 from mbs.output.one_bearing.balls import BALLS
-from mbs.scene.contact_laws import Damper
 from mbs.scene.map_set import TABLE_LAW
+from mbs.scene.specs import BallSpec
 
 if TYPE_CHECKING:
     from mbs.bearings.balls.films import BallFilms
@@ -49,15 +49,22 @@ def _read(arguments: argparse.Namespace, chosen: Mapping[str, Any], problems: li
     except InputError as error:
         problems += [f"{option}: {problem}" for problem in error.problems]
         return None
-    return Asked(geometry, {})
+    return Asked(geometry, {}, tuple(assumed_clearance(geometry, "clearance" in chosen)))
 
 
-def _words_of(law: str, oil: Lubricant, damper: Damper, conditions: FilmConditions) -> tuple[str, str]:
+def _words_of(request: Request) -> tuple[str, str]:
     """Law and films."""
-    if law:
-        return f"films of {oil.title}, {conditions.words}, {_SOURCES[law]}", "films of the law"
+    oil, damper = request.oil, request.damper
+    if request.films:
+        return f"films of {oil.title}, {request.conditions.words}, {_SOURCES[request.law]}", "films of the law"
     dry = "dry Hertz" + (f", {damper.words} of each contact" if damper.words else "")
     return dry, f"films by the formula of Hamrock and Dowson, {oil.title}, {PLAIN.words}"
+
+
+def _force(request: Request) -> BallForce:
+    """The force with its dry law."""
+    geometry, damper = request.asked.geometry, request.damper
+    return BallForce(geometry, dry_law(geometry, STEEL, damper.constant, damper.time))
 
 
 def _films(request: Request) -> Callable[[float], BallLaw] | None:
@@ -148,13 +155,14 @@ BALL_BEARINGS = Family(
     film_laws=(FILMS, TABLE_LAW),
     beside_laws="; maps are of line contacts",
     memory=(".c", ".fmu", ".toml"),
+    spec=BallSpec,
     read=_read,
-    axial_problem=lambda geometry, axial: "",
-    force=lambda asked, damper: BallForce(asked.geometry, dry_law(asked.geometry, STEEL, damper.constant, damper.time)),
+    wrong=lambda asked, operating: "",
+    force=_force,
     words_of=_words_of,
     films=_films,
     at_speed=_at_speed,
-    point=BallPoint,
+    point=BallPoint.at,
     exported=_exported,
     oscillating=_oscillating,
 )

@@ -1,4 +1,4 @@
-"""A family of bearings that carry axial load, as `mbs bearing` asks for them: what differs between them is a row."""
+"""A family of bearings as `mbs bearing` asks for it: what differs between them is a row."""
 
 from __future__ import annotations
 
@@ -9,31 +9,77 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.oil_supply import FilmConditions
-from mbs.output.one_bearing.kind import Description, Kind
+from ehdmaps.physics.oil_supply import FilmConditions, OilSupply
+from ehdmaps.physics.solids import STEEL, Material
+from ehdmaps.physics.surface import Surface
+from mbs.bearings.thermal import BearingState
+from mbs.output.one_bearing.kind import Description, Kind, Points
 from mbs.scene.contact_laws import Damper
 
 if TYPE_CHECKING:
+    from ehdmaps.maps.emap import EHDMap
     from mbs.bearings.locating.film_tables import PairLaw
-    from mbs.bearings.locating.locating_point import LocatingPoint
     from mbs.commands.one_bearing.linear_files import Oscillating
-    from mbs.commands.one_bearing.shared import Operating
     from mbs.exports.one_bearing.kind import ExportKind
 
 
-class Asked(NamedTuple):
-    """A bearing as it was asked for.
+class Operating(NamedTuple):
+    """Loads and speeds that are asked for.
 
     Attributes
     ----------
-    geometry : BallGeometry or TaperedGeometry
+    loads : tuple of float
+        Sizes of the radial load on the inner ring [N].
+    axial : float
+        Axial load on the inner ring [N].
+    way : (float, float)
+        Direction of the radial load, y and z; a unit vector.
+    speeds : tuple of float
+        Speeds of the inner ring [rad/s].
+    outer_speed : float
+        Speed of the outer ring [rad/s].
+    """
+
+    loads: tuple[float, ...]
+    axial: float
+    way: tuple[float, float]
+    speeds: tuple[float, ...]
+    outer_speed: float
+
+
+class Asked(NamedTuple):
+    """A bearing as it was asked for; what nothing states is None.
+
+    Attributes
+    ----------
+    geometry : BearingGeometry, BallGeometry or TaperedGeometry
         Geometry with its clearance.
     options : mapping
-        What its force takes beside: profile, slices.
+        What its scene says of it beside: profile, slices, by their names there.
+    assumed : tuple of str
+        What is assumed of it, in words.
+    material : Material
+        Material of rings and rolling elements.
+    oil, supply, surface : Lubricant, OilSupply, Surface or None
+        What its file, or its map, states.
+    state : BearingState or None
+        Temperatures of its raceways, where they are stated.
+    emap : EHDMap or None
+        Map of its films.
+    structure : str or None
+        Structural law of the films of the table.
     """
 
     geometry: Any
     options: Mapping[str, Any]
+    assumed: tuple[str, ...] = ()
+    material: Material = STEEL
+    oil: Lubricant | None = None
+    supply: OilSupply | None = None
+    surface: Surface | None = None
+    state: BearingState | None = None
+    emap: EHDMap | None = None
+    structure: str | None = None
 
 
 class AtSpeed(NamedTuple):
@@ -41,10 +87,10 @@ class AtSpeed(NamedTuple):
 
     Attributes
     ----------
-    force : BallForce or TaperedForce
+    force : BearingForce, BallForce or TaperedForce
         Geometry and law.
-    films : BallFilms or None
-        Films of balls.
+    films : FilmSource or BallFilms or None
+        What knows the films of its contacts.
     problems, notes : tuple of str
         Why films are lacking, and what is to be known of them.
     """
@@ -57,20 +103,20 @@ class AtSpeed(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """Bearing by designation with its law and films, loads and speeds, as asked for on the command line.
+    """Bearing with its law and films, loads and speeds, as asked for on the command line.
 
     Attributes
     ----------
     family : Family
         Family of the bearing.
     asked : Asked
-        The bearing, with what its force takes beside.
+        The bearing, with what is stated of it.
+    law : str
+        Law of its contacts.
     damper : Damper
-        Damper of its dry law.
-    films : str
-        Law with films, by name; empty where the law is dry.
+        Damper of a dry law.
     by_default : bool
-        Whether films are those of the default: speeds without any are dry then, and say why.
+        Whether the law is that of the default: speeds without films are dry then, and say why.
     memory : bool
         Whether the films of a file for another program have a memory.
     oil : Lubricant
@@ -87,8 +133,8 @@ class Request:
 
     family: Family
     asked: Asked
+    law: str
     damper: Damper
-    films: str
     by_default: bool
     memory: bool
     oil: Lubricant
@@ -97,10 +143,15 @@ class Request:
     description: Description
     trial: bool = False
 
+    @property
+    def films(self) -> str:
+        """Law with films, by name; empty where the law is dry."""
+        return self.law if self.law in self.family.film_laws else ""
+
     @cached_property
     def force(self) -> Any:
-        """Geometry, and its dry law: a BallForce or a TaperedForce."""
-        return self.family.force(self.asked, self.damper)
+        """Geometry and law, the dry one where films are those of a speed: what `Family.force` makes."""
+        return self.family.force(self)
 
     def entrainment_speed(self, speed: float) -> float:
         """Entrainment speed at a speed of the inner ring [rad/s], in m/s."""
@@ -125,26 +176,32 @@ class Family:
         What a message says after the laws that are allowed.
     memory : tuple of str
         Endings of files whose films may have a memory.
+    spec : type
+        What a scene holds of it.
     read : callable
         (arguments, choices, problems) -> bearing as it was asked for; None where a problem was noted.
-    axial_problem : callable
-        (geometry, axial load) -> what is wrong with an axial load; empty where nothing is.
+    wrong : callable
+        (bearing as it was asked for, loads and speeds) -> what is wrong with these; empty where nothing is.
     force : callable
-        (asked, damper) -> force with the dry law.
+        (request) -> force, with the dry law where films are those of a speed.
     words_of : callable
-        (law with films or empty, oil, damper, conditions of the films) -> law, and films, in words.
-    films : callable
-        (request) -> law with the films of an entrainment speed [m/s]; None without any.
+        (request) -> law, and films, in words.
     at_speed : callable
         (request) -> function of the speed of the inner ring [rad/s].
-    point : type
-        Class of its points.
-    exported : callable
-        () -> what its sources and units have of their own.
+    point : callable
+        (force, load, speeds of both rings, and by name tilts, oil, temperature and films) -> point.
+    films : callable
+        (request) -> law with the films of an entrainment speed [m/s]; None without any.
+    exported : callable or None
+        () -> what its sources and units have of their own; None without files for other programs.
     oscillating : callable or None
         (points) -> K and C of films with memory.
-    assumed : tuple of str
-        What is assumed of each of them.
+    own_law : callable
+        (law) -> problems of a law that no other family has; None of other laws.
+    finished : callable
+        (request) -> the request with what is made of all of it: maps.
+    beside : callable
+        (request, points) -> further lines on a single point.
     """
 
     kind: Kind
@@ -154,13 +211,16 @@ class Family:
     film_laws: tuple[str, ...]
     beside_laws: str
     memory: tuple[str, ...]
+    spec: type
     read: Callable[[argparse.Namespace, Mapping[str, Any], list[str]], Asked | None]
-    axial_problem: Callable[[Any, float], str]
-    force: Callable[[Asked, Damper], Any]
-    words_of: Callable[[str, Lubricant, Damper, FilmConditions], tuple[str, str]]
-    films: Callable[[Request], Callable[[float], PairLaw] | None]
+    wrong: Callable[[Asked, Operating], str]
+    force: Callable[[Request], Any]
+    words_of: Callable[[Request], tuple[str, str]]
     at_speed: Callable[[Request], Callable[[float], AtSpeed]]
-    point: type[LocatingPoint]
-    exported: Callable[[], ExportKind]
+    point: Callable[..., Any]
+    films: Callable[[Request], Callable[[float], PairLaw] | None] = lambda request: None
+    exported: Callable[[], ExportKind] | None = None
     oscillating: Callable[[Sequence[Any]], Oscillating] | None = None
-    assumed: tuple[str, ...] = ()
+    own_law: Callable[[str], list[str] | None] = lambda law: None
+    finished: Callable[[Request], Request] = lambda request: request
+    beside: Callable[[Request, Points], list[str]] = lambda request, points: []

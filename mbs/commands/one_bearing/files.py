@@ -106,6 +106,7 @@ def write_export(path: str, given: Export) -> str:
     if is_linear(path):
         oscillating = family.oscillating(points) if given.memory and family.oscillating else None
         return write_linear(path, given.force.geometry.name, heads, points, given.outer_speed, oscillating)
+    assert family.exported is not None  # `is_export` was asked of such families alone
     kind, ends, words = family.exported(), _turning_speeds(given), DRY
     films = None if ends is None else given.films
     laws = kind.speed_laws(given.force, films, ends or (0.0, 0.0), memory=given.memory)

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.exports.target import BEARING_AXES
 from ehdmaps.outputs import MARK, Output, write_text
 from ehdmaps.units import RPM
 from ehdmaps.version import version
@@ -82,6 +81,8 @@ def header_of(heading: Sequence[str]) -> tuple[str, ...]:
     heading : sequence of str
         What was computed, as it is told to people.
     """
+    from ehdmaps.exports.target import BEARING_AXES  # with maps, which points do not need
+
     return (f"{MARK} {version()}", *BEARING_AXES, *(line.strip() for line in heading))
 
 

@@ -10,21 +10,19 @@ from typing import TYPE_CHECKING, Any
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.catalogue import designated
-from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.oil_supply import FilmConditions
-from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry, ribbed_estimate
+from ehdmaps.physics.rollers.ribbed_geometry import ribbed_estimate
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.units import RPM
 from mbs.bearings.tapered.line_film import LineFilms
 from mbs.bearings.tapered.tapered_bearing import MOST_SLICES, SLICES, TaperedForce
 from mbs.bearings.tapered.tapered_point import TaperedPoint
-from mbs.commands.one_bearing.family import Asked, AtSpeed, Family, Request
-from mbs.commands.one_bearing.shared import read_profile_text, read_whole
+from mbs.commands.one_bearing.family import Asked, AtSpeed, Family, Operating, Request
+from mbs.commands.one_bearing.shared import assumed_clearance, read_profile_text, read_whole
 from mbs.output.one_bearing.ribs import RIBBED
-from mbs.scene.contact_laws import Damper
 from mbs.scene.fields import FORCE
 from mbs.scene.map_set import TABLE_LAW
+from mbs.scene.specs import TaperedSpec
 
 if TYPE_CHECKING:
     from mbs.exports.one_bearing.kind import ExportKind
@@ -51,7 +49,8 @@ def _read_ribbed(arguments: argparse.Namespace, chosen: Mapping[str, Any], probl
     if geometry is None:
         return None
     profile = read_profile_text(arguments.profile, designated(arguments.bearing), problems)
-    return Asked(geometry, {"profile": profile, "slices": slices})
+    assumed = (*assumed_clearance(geometry, "clearance" in chosen), "no axial clearance")
+    return Asked(geometry, {"profile": profile, "slices": slices}, assumed)
 
 
 def _geometry(read: Callable[[], TaperedGeometry], problems: list[str]) -> TaperedGeometry | None:
@@ -68,19 +67,20 @@ def _slices(arguments: argparse.Namespace, problems: list[str]) -> int:
     return SLICES if arguments.slices == "41" else read_whole("--slices", arguments.slices, 2, MOST_SLICES, problems)
 
 
-def _axial_of_tapered(geometry: TaperedGeometry, axial: float) -> str:
+def _axial_of_tapered(asked: Asked, operating: Operating) -> str:
     """A problem with an axial load of a tapered roller bearing; empty without one."""
-    if axial > 0.0:
+    if operating.axial > 0.0:
         return ""
+    half = 1.25 * math.tan(asked.geometry.cup_angle)
     return (
-        f"--axial: got {FORCE.text(axial)}; allowed: above zero: the rings of a single tapered roller bearing fall "
-        f"apart without; half of its rollers carry at {1.25 * math.tan(geometry.cup_angle):.3g} of the radial load"
+        f"--axial: got {FORCE.text(operating.axial)}; allowed: above zero: the rings of a single tapered roller "
+        f"bearing fall apart without; half of its rollers carry at {half:.3g} of the radial load"
     )
 
 
-def _axial_of_ribs(geometry: RibbedGeometry, axial: float) -> str:
+def _axial_of_ribs(asked: Asked, operating: Operating) -> str:
     """A problem with an axial load of ribs; empty without one."""
-    both = geometry.carries == "both"
+    axial, both = operating.axial, asked.geometry.carries == "both"
     if axial > 0.0 or (axial < 0.0 and both):
         return ""
     allowed = "not zero; without the option it is a bearing without ribs"
@@ -88,16 +88,22 @@ def _axial_of_ribs(geometry: RibbedGeometry, axial: float) -> str:
     return f"--axial: got {FORCE.text(axial)}; allowed: {allowed}"
 
 
-def _words_of(law: str, oil: Lubricant, damper: Damper, conditions: FilmConditions) -> tuple[str, str]:
+def _words_of(request: Request) -> tuple[str, str]:
     """Law and films."""
-    films = f"films by the formulas of Moes and Dowson-Higginson, {oil.title}"
-    if law:
-        supply, surface = conditions.supply, conditions.surface
-        rough = "" if surface.smooth else f", {surface.label}"
+    conditions, damper = request.conditions, request.damper
+    films = f"films by the formulas of Moes and Dowson-Higginson, {request.oil.title}"
+    if request.films:
+        rough = "" if conditions.surface.smooth else f", {conditions.surface.label}"
         warm = ", inlet heat" if conditions.inlet_heat else ""
-        layer = "" if supply.flooded else f", {supply.label}"
+        layer = "" if conditions.supply.flooded else f", {conditions.supply.label}"
         return f"film table at radius and speed of the middle{warm}{layer}, rib dry{rough}", films
     return "dry, ISO/TS 16281, rib Hertz" + (f", {damper.words} of each contact" if damper.words else ""), films
+
+
+def _force(request: Request) -> TaperedForce:
+    """The force with its dry law."""
+    damper = request.damper
+    return TaperedForce(request.asked.geometry, damper.constant, damper.time, **request.asked.options)
 
 
 def _films(request: Request) -> Callable[[float], LineFilms] | None:
@@ -154,13 +160,14 @@ TAPERED_BEARINGS = Family(
     film_laws=(TABLE_LAW,),
     beside_laws="",
     memory=(".c", ".fmu"),
+    spec=TaperedSpec,
     read=_read_tapered,
-    axial_problem=_axial_of_tapered,
-    force=lambda asked, damper: TaperedForce(asked.geometry, damper.constant, damper.time, **asked.options),
+    wrong=_axial_of_tapered,
+    force=_force,
     words_of=_words_of,
     films=_films,
     at_speed=_at_speed,
-    point=TaperedPoint,
+    point=TaperedPoint.at,
     exported=_exported_tapered,
 )
 """Tapered roller bearings."""
@@ -170,8 +177,7 @@ RIBBED_BEARINGS = dataclasses.replace(
     words="ribbed roller bearing",
     taken=(*_TAKEN, "clearance"),
     read=_read_ribbed,
-    axial_problem=_axial_of_ribs,
+    wrong=_axial_of_ribs,
     exported=_exported_ribbed,
-    assumed=("no axial clearance",),
 )
 """Cylindrical roller bearings whose ribs carry an axial load: NJ and NUP."""

@@ -5,25 +5,27 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ehdmaps.choices import texts_of
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.physics.designations.clearance import clearance_range
 from ehdmaps.physics.heat import ISOTHERMAL, heat_data
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
-from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.solids import STEEL, Material
-from ehdmaps.physics.surface import SMOOTH, CrownedProfile, Surface, TabulatedProfile
-from ehdmaps.units import RPM, Display, quantity, short
+from ehdmaps.physics.solids import STEEL
+from ehdmaps.physics.surface import CrownedProfile, TabulatedProfile
+from ehdmaps.units import RPM, TEMPERATURE, Display, closest, quantity, short
+from mbs.bearings.films import SIDES
+from mbs.commands.one_bearing.family import Family, Operating
 from mbs.output.one_bearing.table import WIDE_RANGE
 from mbs.scene.choices import OPTIONS
 from mbs.scene.contact_laws import HERTZ_FORMS, Damper, hertz_damper
-from mbs.scene.fields import FORCE, MICROMETRE
+from mbs.scene.fields import FORCE
+from mbs.scene.map_set import TABLE_LAW
 
 if TYPE_CHECKING:
     from ehdmaps.physics.point.ball_geometry import BallGeometry
@@ -218,55 +220,6 @@ def read_whole(option: str, text: str, low: int, high: int, problems: list[str])
     return low
 
 
-@dataclass(frozen=True)
-class Given:
-    """A cylindrical roller bearing as it is given: oil, supply and surfaces are None where nothing states them.
-
-    Attributes
-    ----------
-    geometry : BearingGeometry
-        Geometry of the bearing.
-    material : Material
-        Material of rings and rollers.
-    oil : Lubricant or None
-        Oil of the file.
-    supply : OilSupply or None
-        Oil supply of the file.
-    surface : Surface or None
-        Surfaces of the file.
-    """
-
-    geometry: BearingGeometry
-    material: Material
-    oil: Lubricant | None = None
-    supply: OilSupply | None = None
-    surface: Surface | None = None
-
-
-class Operating(NamedTuple):
-    """Loads and speeds that are asked for.
-
-    Attributes
-    ----------
-    loads : tuple of float
-        Sizes of the radial load on the inner ring [N].
-    axial : float
-        Axial load on the inner ring [N].
-    way : (float, float)
-        Direction of the radial load, y and z; a unit vector.
-    speeds : tuple of float
-        Speeds of the inner ring [rad/s].
-    outer_speed : float
-        Speed of the outer ring [rad/s].
-    """
-
-    loads: tuple[float, ...]
-    axial: float
-    way: tuple[float, float]
-    speeds: tuple[float, ...]
-    outer_speed: float
-
-
 def read_operating(arguments: argparse.Namespace, problems: list[str], *, axial: bool = True) -> Operating:
     """Loads and speeds, of which there may not be too many.
 
@@ -297,7 +250,7 @@ def refuse_others(
     problems: list[str],
     own: Sequence[str] = (),
 ) -> None:
-    """Note options that are for cylindrical roller bearings.
+    """Note options that are for bearings of other families.
 
     Parameters
     ----------
@@ -310,57 +263,94 @@ def refuse_others(
     problems : list of str
         What is wrong; added to.
     own : sequence of str
-        Further options that the bearing takes: profile, slices.
+        Further options that the bearing takes, some of `_OWN`.
     """
     given = [f"--{name}" for name in chosen if name not in (*taken, "know")]
     given += [
-        f"--{side}-ring-temperature"
-        for side in ("inner", "outer")
-        if getattr(arguments, f"{side}_ring_temperature") is not None
+        f"--{name}"
+        for name, usual in _OWN.items()
+        if name not in own and getattr(arguments, name.replace("-", "_")) != usual
     ]
-    for name, usual in (("profile", "iso"), ("slices", "41")):
-        given += [f"--{name}"] * (name not in own and getattr(arguments, name) != usual)
-    given += ["--coupled"] * bool(arguments.coupled)
     if given:
         names = (*taken, *own, "oil", "axial", "outer-speed", "tilts", "direction", "plot")
         allowed = ", ".join(f"--{name}" for name in names)
         problems.append(f"{', '.join(given)}: not for {kind}s; allowed: {allowed} and -o; leave it out")
 
 
-def read_damper(law: str, kind: str, more: str, problems: list[str]) -> Damper | None:
-    """Damper of the law hertz; None where a problem was noted.
-
-    Parameters
-    ----------
-    law : str
-        Law as it was typed.
-    kind, more : str
-        Kind of the bearing, and what else is allowed, in words.
-    problems : list of str
-        What is wrong; added to.
-    """
-    try:
-        damper = hertz_damper(law)
-    except InputError as error:
-        problems += error.problems
-        return None
-    if damper is None:
-        problems.append(f"--law: got {law!r:.60} for a {kind}; allowed: hertz, {HERTZ_FORMS}{more}")
-    return damper
+_OWN = {
+    "inner-ring-temperature": None,
+    "outer-ring-temperature": None,
+    "profile": "iso",
+    "slices": "41",
+    "coupled": False,
+}
+"""Options that some families take, as they are where nothing is given."""
 
 
-def read_surface(chosen: Mapping[str, Any]) -> tuple[Surface, float, list[str]]:
-    """Surfaces as they were chosen, the roughness of Lambda [m], and a line where that is only assumed.
+def read_law(chosen: Mapping[str, Any], family: Family, problems: list[str]) -> tuple[str, Damper | None]:
+    """The law, that of the map or the film table if none is chosen, and its damper; None where a problem was noted.
 
     Parameters
     ----------
     chosen : mapping of str to object
         Choices by their names.
+    family : Family
+        Family of the bearing.
+    problems : list of str
+        What is wrong; added to.
     """
-    surface: Surface = chosen.get("roughness", SMOOTH)
-    if surface.smooth:
-        return SMOOTH, ROUGHNESS, [f"combined rms roughness {MICROMETRE.text(ROUGHNESS)} (for Lambda only)"]
-    return surface, surface.roughness, []
+    law: str = chosen.get("law", "map" if "map" in family.film_laws and "map" in chosen else TABLE_LAW)
+    if law in family.film_laws:
+        return law, Damper()
+    if (own := family.own_law(law)) is not None:
+        problems += own
+        return law, Damper()
+    try:
+        damper = hertz_damper(law)
+    except InputError as error:
+        problems += error.problems
+        return law, None
+    if damper is None:
+        near = closest(law, ("hertz", *family.film_laws))
+        more = "".join(f", {name}" for name in family.film_laws) + family.beside_laws
+        problems.append(f"--law: got {short(law)}{near} for a {family.words}; allowed: hertz, {HERTZ_FORMS}{more}")
+    return law, damper
+
+
+def ring_texts(arguments: argparse.Namespace) -> tuple[str | None, str | None]:
+    """Temperatures of the inner and the outer raceway as they were typed; None where they were not.
+
+    Parameters
+    ----------
+    arguments : Namespace
+        Options as they were parsed.
+    """
+    return arguments.inner_ring_temperature, arguments.outer_ring_temperature
+
+
+def read_rings(arguments: argparse.Namespace, chosen: Mapping[str, Any], problems: list[str]) -> tuple[float, float]:
+    """Temperatures of the inner and the outer raceway [K], that of --temperature where they have none of their own.
+
+    Parameters
+    ----------
+    arguments : Namespace
+        Options as they were parsed.
+    chosen : mapping of str to object
+        Choices by their names.
+    problems : list of str
+        What is wrong; added to.
+    """
+    around, given = float(chosen.get("temperature", CELSIUS_40)), ring_texts(arguments)
+    if "temperature" in chosen and None not in given:
+        problems.append(
+            f"--temperature: got {TEMPERATURE.text(around)} with --inner-ring-temperature and "
+            "--outer-ring-temperature; allowed: two of the three; it is that of a ring that has none"
+        )
+    inner, outer = (
+        read_one(f"--{side}-ring-temperature", text, "K", OIL_TEMPERATURES, TEMPERATURE, around, problems)
+        for side, text in zip(SIDES, given, strict=True)
+    )
+    return inner, outer
 
 
 def read_profile_text(

@@ -1,0 +1,258 @@
+"""`mbs bearing` of a bearing of any family: every problem at once, points, bands, files."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import math
+from collections.abc import Iterator, Mapping
+from functools import cache
+from typing import Any
+
+from ehdmaps.errors import AnalysisError, InputError, SolverError
+from ehdmaps.outputs import FIGURE, Output, output_problems
+from ehdmaps.physics.lubricant import DEFAULT_OIL
+from ehdmaps.physics.oil_supply import FLOODED, FilmConditions
+from ehdmaps.physics.surface import SMOOTH
+from ehdmaps.units import TEMPERATURE
+from mbs.analyses.bearing_point import points_over, without_holes
+from mbs.commands.one_bearing.bands import NAME, point_bands, scene_of, turned
+from mbs.commands.one_bearing.family import AtSpeed, Family, Request
+from mbs.commands.one_bearing.files import SOURCE, UNIT, Export, bearing_outputs, is_export, write_export
+from mbs.commands.one_bearing.linear_files import count_problems, ending_of
+from mbs.commands.one_bearing.shared import (
+    CELSIUS_40,
+    ROUGHNESS,
+    read_choices,
+    read_heat,
+    read_law,
+    read_oil,
+    read_operating,
+    read_rings,
+    refuse_others,
+    ring_texts,
+)
+from mbs.model.findings import Cause, Finding
+from mbs.output.files import result_kind
+from mbs.output.one_bearing.kind import Description, Points
+from mbs.scene.contact_laws import table_path
+from mbs.scene.fields import MICROMETRE
+from mbs.scene.map_set import TABLE_LAW
+from mbs.scene.scene import Scene
+from mbs.unknowns.looks import Band
+
+
+def read_request(arguments: argparse.Namespace, family: Family) -> Request:
+    """Read the bearing and all options.
+
+    Parameters
+    ----------
+    arguments : Namespace
+        Options as they were parsed.
+    family : Family
+        Family of the bearing.
+
+    Raises
+    ------
+    InputError
+        With every problem.
+    """
+    problems: list[str] = []
+    chosen = read_choices(arguments, problems)
+    asked = family.read(arguments, chosen, problems)
+    refuse_others(arguments, list(chosen), family.taken, family.words, problems, family.own)
+    law, damper = read_law(chosen, family, problems)
+    dry = law not in family.film_laws
+    operating = read_operating(arguments, problems, axial=family.kind.axial)
+    if asked is not None and (wrong := family.wrong(asked, operating)):
+        problems.append(wrong)
+    if family.memory and "films" in chosen and (dry or ending_of(arguments.output) not in family.memory):
+        files = ", ".join(f"NAME{ending}" for ending in family.memory)
+        problems.append(
+            f"--films: got {chosen['films']!r} for a {family.words}; allowed: with --law {TABLE_LAW} and -o {files}"
+        )
+    temperature, both_rings = 0.5 * sum(read_rings(arguments, chosen, problems)), None not in ring_texts(arguments)
+    stated = None if asked is None else asked.oil
+    oil = read_oil(arguments.oil, temperature, problems, stated)
+    lack = f"with dry contacts; allowed: with --law {TABLE_LAW}" if dry else ""
+    if law in ("map", "formula"):
+        lack = f"without films of the film table; allowed: with --law {TABLE_LAW}"
+    heat = read_heat(chosen, oil, lack, problems)
+    if "supply" in chosen and dry and family.kind.axial:  # of others it is in the films of formulas, too
+        problems.append(f"--supply: got {chosen['supply'].label} {lack}")
+    problems += _output_problems(arguments, family, chosen, law)
+    problems += count_problems(
+        arguments.output,
+        len(operating.loads),
+        len(operating.speeds),
+        of_one_load=family.exported is not None and is_export(arguments.output),
+    )
+    if problems or asked is None or damper is None or oil is None:
+        raise InputError(tuple(dict.fromkeys(problems)))
+    surface = asked.surface or SMOOTH
+    if "roughness" in chosen:
+        surface = dataclasses.replace(surface, roughness=chosen["roughness"].roughness)
+    roughness = ROUGHNESS if surface.smooth else surface.roughness
+    supply = chosen.get("supply") or asked.supply or FLOODED
+    assumed = (
+        *([f"temperature {TEMPERATURE.text(CELSIUS_40)}"] if "temperature" not in chosen and not both_rings else []),
+        *([f"combined rms roughness {MICROMETRE.text(ROUGHNESS)} (for Lambda only)"] if surface.smooth else []),
+        *asked.assumed,
+        *([f"oil {DEFAULT_OIL}"] if arguments.oil is None and stated is None else []),
+    )
+    request = family.finished(
+        Request(
+            family=family,
+            asked=asked,
+            law=law,
+            damper=damper,
+            by_default="law" not in chosen,
+            memory=chosen.get("films") == "memory",
+            oil=oil,
+            conditions=FilmConditions(heat, supply, surface),
+            operating=operating,
+            description=Description(
+                law="",
+                films="",
+                direction=math.degrees(math.atan2(operating.way[1], operating.way[0])),
+                temperature=temperature,
+                roughness=roughness,
+                tilts=family.kind.axial and arguments.tilts,
+                assumed=assumed,
+                surface=SMOOTH if dry else surface,
+                supply=supply,
+                oil=oil,
+                state=asked.state,
+                known=chosen.get("know", ()),
+            ),
+        )
+    )
+    words, films = family.words_of(request)
+    films += "" if oil.verified else " (unverified data of the oil)"
+    return dataclasses.replace(request, description=dataclasses.replace(request.description, law=words, films=films))
+
+
+def _output_problems(
+    arguments: argparse.Namespace, family: Family, chosen: Mapping[str, Any], law: str
+) -> Iterator[str]:
+    """Problems with the files that are to be written; of rollers as C they name the command that writes them."""
+    exports = family.exported is not None
+    plain = Output("-o", arguments.output, result_kind(arguments.output))
+    outputs = bearing_outputs(arguments.output) if exports else (plain,)
+    read = (arguments.bearing, chosen.get("map"), table_path(law))
+    ending = ending_of(arguments.output)
+    beside = f"; a bearing of rollers as {ending}: `ehdmaps export BEARING --to {ending[1:]}`"
+    named = not exports and ending in (SOURCE, UNIT)
+    for problem in output_problems((*outputs, Output("--plot", arguments.plot, FIGURE)), [one for one in read if one]):
+        yield problem + beside * (named and problem.startswith("-o: "))
+
+
+def points_of(request: Request) -> list[list[Any]]:
+    """Points at every load and every speed.
+
+    Parameters
+    ----------
+    request : Request
+        What is asked.
+    """
+    at_speed, asked = cache(request.family.at_speed(request)), request.operating
+    first = 0 if request.family.kind.axial else 1  # of a bearing that moves across its axis alone
+    loads = [(asked.axial, load * asked.way[0], load * asked.way[1])[first:] for load in asked.loads]
+    return points_over(loads, asked.speeds, lambda load, speed: _point(request, load, speed, at_speed(speed)))
+
+
+def _point(request: Request, load: tuple[float, ...], speed: float, at: AtSpeed) -> Any:
+    """The point at a load and a speed, with what is to be said of its films."""
+    description = request.description
+    point = request.family.point(
+        at.force,
+        load,
+        speed,
+        request.operating.outer_speed,
+        tilts=description.tilts,
+        oil=request.oil,
+        temperature=description.temperature,
+        films=at.films,
+    )
+    told = [Finding(Cause.REACH, words) for words in at.problems] + [Finding(Cause.FILM, words) for words in at.notes]
+    return dataclasses.replace(point, findings=(*point.findings, *told))
+
+
+def scene_as(request: Request) -> Scene:
+    """The bearing as the only one of a scene, to ask what is not known of it.
+
+    Parameters
+    ----------
+    request : Request
+        What is asked.
+    """
+    spec = request.family.spec(NAME, "", "", request.asked.geometry, **request.asked.options)
+    return scene_of(spec, request.oil, request.description)
+
+
+def bands_of(request: Request, points: Points) -> dict[str, Band]:
+    """Bands of what is not known of a single point, by the names of its numbers; none of several.
+
+    Parameters
+    ----------
+    request : Request
+        What is asked.
+    points : sequence of sequence
+        Points by load, then by speed.
+    """
+    if len(points) * len(points[0]) > 1 or points[0][0].failed:
+        return {}
+
+    def again(scene: Scene) -> tuple[Description, Any]:
+        other = _changed(request, scene)
+        return other.description, points_of(other)[0][0]
+
+    return point_bands(request.family.kind, request.description, points[0][0], scene_as(request), again)
+
+
+def _changed(request: Request, scene: Scene) -> Request:
+    """The same request of a scene that is a little different; a map from a file stays what it is."""
+    (spec,) = scene.of_all_kinds
+    options = {name: getattr(spec, name) for name in request.asked.options}
+    oil, kelvin = scene.lubricant or request.oil, scene.temperature
+    changed = dataclasses.replace(
+        request,
+        asked=request.asked._replace(geometry=spec.geometry, options=options),
+        oil=oil,
+        operating=request.operating._replace(way=turned(request.operating.way, spec.start_angle)),
+        description=dataclasses.replace(request.description, oil=oil, temperature=kelvin),
+        trial=True,
+    )
+    return request.family.finished(changed)
+
+
+def write_file(path: str, request: Request, points: Points, bands: dict[str, Band]) -> str:
+    """Write the file of -o, and return what was written in words.
+
+    Parameters
+    ----------
+    path : str
+        Path of -o.
+    request : Request
+        What was asked.
+    points : sequence of sequence
+        Points by load, then by speed.
+    bands : dict of str to Band
+        Bands of the only one.
+
+    Raises
+    ------
+    InputError, AnalysisError
+        If it cannot be written, or a point or a speed has no answer.
+    """
+    family, description = request.family, request.description
+    if not is_export(path):
+        from mbs.output.one_bearing.files import write_points
+
+        return write_points(family.kind, description, points, path, bands)
+    row, outer_speed = without_holes(path, list(points[0])), request.operating.outer_speed
+    films, memory = family.films(request), request.memory
+    try:
+        return write_export(path, Export(family, request.force, description, row, outer_speed, films, memory))
+    except SolverError as error:
+        raise AnalysisError(f"-o {path}: {error}") from error
