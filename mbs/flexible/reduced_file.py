@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ehdmaps.arrays import variable
 from ehdmaps.errors import InputError
 from ehdmaps.netcdf_structure import structure_problem
 from ehdmaps.outputs import MADE_AS, Kind, root_attributes, written_aside
@@ -147,42 +148,34 @@ def _dataset(reduced: ReducedBody) -> xr.Dataset:
     arrays = _arrays(reduced)
     per = "by the units of the coordinates"
     variables: dict[str, Any] = {
-        "mass": (
-            ("coordinate", "with_respect_to"),
-            arrays["mass"],
-            {"units": f"kg for m, {per}", "long_name": "mass matrix"},
+        "mass": variable(("coordinate", "with_respect_to"), arrays["mass"], f"kg for m, {per}", "mass matrix"),
+        "stiffness": variable(
+            ("coordinate", "with_respect_to"), arrays["stiffness"], f"N/m for m, {per}", "stiffness matrix"
         ),
-        "stiffness": (
-            ("coordinate", "with_respect_to"),
-            arrays["stiffness"],
-            {"units": f"N/m for m, {per}", "long_name": "stiffness matrix"},
+        "unit": variable("coordinate", arrays["units"], "", "unit of the coordinate"),
+        "position": variable(
+            ("frame", "axis"), arrays["positions"], "m", "place from the origin of the finite-element body"
         ),
-        "unit": ("coordinate", arrays["units"], {"long_name": "unit of the coordinate"}),
-        "position": (
-            ("frame", "axis"),
-            arrays["positions"],
-            {"units": "m", "long_name": "place from the origin of the finite-element body"},
-        ),
-        "transform": (
+        "transform": variable(
             ("frame", "freedom", "coordinate"),
             arrays["transforms"],
-            {"units": f"m or rad, {per}", "long_name": "displacement of the place by the coordinates"},
+            f"m or rad, {per}",
+            "displacement of the place by the coordinates",
         ),
     }
     if reduced.skin is not None:
         place, motion, corners = (arrays[name] for name in _SKIN)
         variables |= {
-            _SKIN[0]: (
-                ("surface_node", "axis"),
-                place,
-                {"units": "m", "long_name": "places of the surface from the origin of the finite-element body"},
+            _SKIN[0]: variable(
+                ("surface_node", "axis"), place, "m", "places of the surface from the origin of the finite-element body"
             ),
-            _SKIN[1]: (
+            _SKIN[1]: variable(
                 ("surface_node", "axis", "coordinate"),
                 motion,
-                {"units": f"m, {per}", "long_name": "displacement of the surface by the coordinates"},
+                f"m, {per}",
+                "displacement of the surface by the coordinates",
             ),
-            _SKIN[2]: (("triangle", "corner"), corners, {"long_name": "triangles of the surface, by their nodes"}),
+            _SKIN[2]: variable(("triangle", "corner"), corners, "", "triangles of the surface, by their nodes"),
         }
     if reduced.left_out is not None:
         words = {
@@ -191,11 +184,11 @@ def _dataset(reduced: ReducedBody) -> xr.Dataset:
         }
         variables[_REST] = (("coordinate", "with_respect_to"), reduced.left_out, words)
     coordinates = {
-        "coordinate": ("coordinate", arrays["coordinates"], {"long_name": "coordinates of the reduced body"}),
-        "with_respect_to": ("with_respect_to", arrays["coordinates"], {"long_name": "coordinates of the reduced body"}),
-        "frame": ("frame", arrays["frames"], {"long_name": "places on the body"}),
-        "freedom": ("freedom", list(FREEDOMS), {"long_name": "freedoms of a place"}),
-        "axis": ("axis", ["x", "y", "z"], {"long_name": "axes"}),
+        "coordinate": variable("coordinate", arrays["coordinates"], "", "coordinates of the reduced body"),
+        "with_respect_to": variable("with_respect_to", arrays["coordinates"], "", "coordinates of the reduced body"),
+        "frame": variable("frame", arrays["frames"], "", "places on the body"),
+        "freedom": variable("freedom", list(FREEDOMS), "", "freedoms of a place"),
+        "axis": variable("axis", ["x", "y", "z"], "", "axes"),
     }
     return xr.Dataset(
         variables, coords=coordinates, attrs={"schema_version": SCHEMA_VERSION, **reduced.attributes, **_MADE}

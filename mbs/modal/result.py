@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.arrays import ComplexArray, FloatArray, variable
 from mbs.modal.records import Responses
 from mbs.modal.residues import Parts, laplace, synthesise
 from mbs.modal.stabilisation import Candidate
@@ -99,53 +99,42 @@ def fit_dataset(fit: ModalFit) -> xr.Dataset:
     curves = fit.synthesise(measured.frequency)
     rows, mode = ("row", "frequency_line"), ("mode",)
     variables = {
-        "frequency": (mode, fit.frequency, {"units": "Hz", "long_name": "|pole|/(2 pi)"}),
-        "damping_ratio": (mode, fit.damping_ratio, {"units": "1", "long_name": "damping ratio"}),
-        "frequency_uncertainty": (
+        "frequency": variable(mode, fit.frequency, "Hz", "|pole|/(2 pi)"),
+        "damping_ratio": variable(mode, fit.damping_ratio, "1", "damping ratio"),
+        "frequency_uncertainty": variable(
             mode,
             fit.frequency_uncertainty,
-            {"units": "Hz", "long_name": "standard uncertainty of the frequency, by noise or by orders of the fit"},
+            "Hz",
+            "standard uncertainty of the frequency, by noise or by orders of the fit",
         ),
-        "damping_ratio_uncertainty": (
-            mode,
-            fit.damping_uncertainty,
-            {"units": "1", "long_name": "standard uncertainty of the damping ratio, by noise or by orders"},
+        "damping_ratio_uncertainty": variable(
+            mode, fit.damping_uncertainty, "1", "standard uncertainty of the damping ratio, by noise or by orders"
         ),
-        "pole_real": (mode, fit.poles.real, {"units": "1/s", "long_name": "decay, window taken out"}),
-        "pole_imaginary": (mode, fit.poles.imag, {"units": "rad/s", "long_name": "damped frequency"}),
-        "orders": (mode, np.array(fit.counts, dtype=np.int64), {"units": "1", "long_name": "orders that found it"}),
+        "pole_real": variable(mode, fit.poles.real, "1/s", "decay, window taken out"),
+        "pole_imaginary": variable(mode, fit.poles.imag, "rad/s", "damped frequency"),
+        "orders": variable(mode, np.array(fit.counts, dtype=np.int64), "1", "orders that found it"),
         "residue_real": (("mode", "row"), fit.parts.residues.real, _residue("real")),
         "residue_imaginary": (("mode", "row"), fit.parts.residues.imag, _residue("imaginary")),
-        "term_below": (
-            ("row",),
-            fit.parts.below,
-            {"units": "displacement per N, 1/s2", "long_name": "residual term of the modes below the band"},
+        "term_below": variable(
+            ("row",), fit.parts.below, "displacement per N, 1/s2", "residual term of the modes below the band"
         ),
-        "term_above": (
-            ("row",),
-            fit.parts.above,
-            {"units": "displacement per N", "long_name": "residual term of the modes above the band"},
+        "term_above": variable(
+            ("row",), fit.parts.above, "displacement per N", "residual term of the modes above the band"
         ),
-        "fit_error": (
-            ("row",),
-            fit.error,
-            {"units": "1", "long_name": "rms that the fit leaves, over the rms of the response"},
-        ),
-        "response_real": (rows, measured.response.real, {"units": units, "long_name": "measured, real part"}),
-        "response_imaginary": (rows, measured.response.imag, {"units": units, "long_name": "measured, imaginary part"}),
-        "fit_real": (rows, curves.real, {"units": units, "long_name": "fit, real part"}),
-        "fit_imaginary": (rows, curves.imag, {"units": units, "long_name": "fit, imaginary part"}),
-        "coherence": (rows, measured.coherence, {"units": "1", "long_name": "coherence; NaN where not known"}),
-        "quantity": (
-            ("row",),
-            [sensor.quantity for sensor, _ in measured.pairs],
-            {"long_name": "what the sensor measures"},
+        "fit_error": variable(("row",), fit.error, "1", "rms that the fit leaves, over the rms of the response"),
+        "response_real": variable(rows, measured.response.real, units, "measured, real part"),
+        "response_imaginary": variable(rows, measured.response.imag, units, "measured, imaginary part"),
+        "fit_real": variable(rows, curves.real, units, "fit, real part"),
+        "fit_imaginary": variable(rows, curves.imag, units, "fit, imaginary part"),
+        "coherence": variable(rows, measured.coherence, "1", "coherence; NaN where not known"),
+        "quantity": variable(
+            ("row",), [sensor.quantity for sensor, _ in measured.pairs], "", "what the sensor measures"
         ),
     }
     coordinates = {
         "mode": np.arange(1, fit.poles.size + 1),
         "row": list(measured.labels),
-        "frequency_line": ("frequency_line", measured.frequency, {"units": "Hz", "long_name": "frequency"}),
+        "frequency_line": variable("frequency_line", measured.frequency, "Hz", "frequency"),
     }
     attributes = {
         "method": "lscf",

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.arrays import ComplexArray, FloatArray, variable
 from mbs.bearings.films import SIDES
 from mbs.bearings.thermal import BearingHeat, BearingState
 from mbs.gears.gear import GearMesh
@@ -63,7 +63,7 @@ def with_energy(dataset: xr.Dataset, energy: EnergyBalance) -> xr.Dataset:
         dim, attributes = f"{name}_term", {"units": "J", "long_name": words}
         dataset = dataset.assign({name: (dim, list(terms.values()), attributes)}).assign_coords({dim: list(terms)})
     words = "what the energy balance of the run does not close"
-    return dataset.assign(energy_residual=((), energy.residual, {"units": "J", "long_name": words}))
+    return dataset.assign(energy_residual=variable((), energy.residual, "J", words))
 
 
 def with_spectra(dataset: xr.Dataset, spectra: Sequence[Sequence[Sequence[AmplitudeSpectrum]]]) -> xr.Dataset:
@@ -87,19 +87,18 @@ def with_spectra(dataset: xr.Dataset, spectra: Sequence[Sequence[Sequence[Amplit
     words = "amplitude of a sine at each line"
     window = f"window of {first[0].window:.6g} s about the speed"
     return dataset.assign(
-        spectrum_amplitude=(dims, values, {"units": "by signal_unit", "long_name": f"{words}, {window}"}),
-        spectrum_time=(
-            "spectrum_speed",
-            np.array([spectrum.time for spectrum in first]),
-            {"units": "s", "long_name": "middle of the window"},
+        spectrum_amplitude=variable(dims, values, "by signal_unit", f"{words}, {window}"),
+        spectrum_time=variable(
+            "spectrum_speed", np.array([spectrum.time for spectrum in first]), "s", "middle of the window"
         ),
     ).assign_coords(
-        spectrum_speed=(
+        spectrum_speed=variable(
             "spectrum_speed",
             np.array([spectrum.speed for spectrum in first]),
-            {"units": "rad/s", "long_name": "speed in the middle of the window"},
+            "rad/s",
+            "speed in the middle of the window",
         ),
-        spectrum_frequency=("spectrum_frequency", first[0].frequencies, {"units": "Hz", "long_name": "frequency"}),
+        spectrum_frequency=variable("spectrum_frequency", first[0].frequencies, "Hz", "frequency"),
     )
 
 
@@ -157,7 +156,7 @@ def with_states(dataset: xr.Dataset, states: _States, dims: tuple[str, ...] = ()
         first = first[0]
     names = np.array([state.name for state in first], dtype=np.str_)
     variables = {
-        name: ((*dims, "bearing"), np.array(_values(states, read)), {"units": unit, "long_name": words})
+        name: variable((*dims, "bearing"), np.array(_values(states, read)), unit, words)
         for name, unit, words, read in rows
     }
     added = xr.Dataset(variables, coords={"bearing": names})
@@ -325,13 +324,11 @@ def statics_dataset(
     pairs = [ring_matrices(balance.element_stiffness[i], balance.element_damping[i]) for i in bearings]
     for index, (name, unit) in enumerate((("stiffness", "N/m"), ("damping", "N s/m"))):
         rings = [pair[index] for pair in pairs]
-        variables[f"bearing_{name}"] = (
+        variables[f"bearing_{name}"] = variable(
             ("bearing", "freedom", "with_respect_to"),
             np.stack(rings) if rings else np.zeros((0, 6, 6)),
-            {
-                "units": f"{unit}, N m and rad in place of N and m for tilts",
-                "long_name": f"{name} of the bearing on its inner ring",
-            },
+            f"{unit}, N m and rad in place of N and m for tilts",
+            f"{name} of the bearing on its inner ring",
         )
     variables |= _element_loads(balance, bearings)
     coordinates = {
@@ -343,18 +340,17 @@ def statics_dataset(
         coordinates["contact"] = list(SIDES)
         for name, unit, words in _CONTACTS:
             values = np.array([getattr(state, name) for state in contacts])
-            variables[name] = (("bearing", "contact"), values, {"units": unit, "long_name": words})
+            variables[name] = variable(("bearing", "contact"), values, unit, words)
     if losses:
         known = "films only; none of laws without rolling forces"
-        variables["rolling_torque"] = (
-            "bearing",
-            np.array([loss.torque for loss in losses]),
-            {"units": "N m", "long_name": f"torque that rolling takes; {known}"},
+        variables["rolling_torque"] = variable(
+            "bearing", np.array([loss.torque for loss in losses]), "N m", f"torque that rolling takes; {known}"
         )
-        variables["rolling_power"] = (
+        variables["rolling_power"] = variable(
             "bearing",
             np.array([loss.total for loss in losses]),
-            {"units": "W", "long_name": f"power that the films of all rollers or balls take; {known}"},
+            "W",
+            f"power that the films of all rollers or balls take; {known}",
         )
     attributes = {**_operation(balance), "warnings": "\n".join(warnings)}
     return xr.Dataset(variables, coords={**_coordinates(balance.system), **coordinates}, attrs=attributes)
@@ -372,8 +368,8 @@ def _element_loads(balance: Equilibrium, bearings: Sequence[int]) -> dict[str, A
     highest = [math.nan if loads is None else float(np.max(loads)) for loads in known]
     loaded = [math.nan if loads is None else np.count_nonzero(loads > CARRIES * np.max(loads)) for loads in known]
     return {
-        "highest_raceway_load": ("bearing", np.array(highest), {"units": "N", "long_name": HIGHEST_LOAD}),
-        "loaded_elements": ("bearing", np.array(loaded, dtype=np.float64), {"units": "1", "long_name": LOADED}),
+        "highest_raceway_load": variable("bearing", np.array(highest), "N", HIGHEST_LOAD),
+        "loaded_elements": variable("bearing", np.array(loaded, dtype=np.float64), "1", LOADED),
     }
 
 
@@ -389,29 +385,17 @@ def modes_dataset(found: Modes, balance: Equilibrium) -> xr.Dataset:
     frequency_law, damping_law = (none, none) if found.film_law is None else found.film_law
     frequency_rest, damping_rest = (none, none) if found.reduction is None else found.reduction
     variables = {
-        "frequency": ("mode", found.frequency, {"units": "Hz", "long_name": "|eigenvalue|/(2 pi)"}),
-        "damping_ratio": ("mode", found.damping_ratio, {"units": "1", "long_name": "damping ratio"}),
-        "frequency_error": ("mode", frequency_band, {"units": "Hz", "long_name": f"{BAND} the frequency"}),
-        "damping_ratio_error": ("mode", damping_band, {"units": "1", "long_name": f"{BAND} the damping ratio"}),
-        "frequency_film_law": ("mode", frequency_law, {"units": "Hz", "long_name": f"{LEFT_OUT} of the frequency"}),
-        "damping_ratio_film_law": (
-            "mode",
-            damping_law,
-            {"units": "1", "long_name": f"{LEFT_OUT} of the damping ratio"},
-        ),
-        "frequency_reduction": ("mode", frequency_rest, {"units": "Hz", "long_name": f"{REDUCED} of the frequency"}),
-        "damping_ratio_reduction": (
-            "mode",
-            damping_rest,
-            {"units": "1", "long_name": f"{REDUCED} of the damping ratio"},
-        ),
-        "eigenvalue_real": ("mode", found.eigenvalues.real, {"units": "1/s", "long_name": "decay"}),
-        "eigenvalue_imaginary": ("mode", found.eigenvalues.imag, {"units": "rad/s", "long_name": "damped frequency"}),
-        "energy_share": (
-            ("part", "mode"),
-            found.shares,
-            {"units": "1", "long_name": "part of the strain energy of the mode"},
-        ),
+        "frequency": variable("mode", found.frequency, "Hz", "|eigenvalue|/(2 pi)"),
+        "damping_ratio": variable("mode", found.damping_ratio, "1", "damping ratio"),
+        "frequency_error": variable("mode", frequency_band, "Hz", f"{BAND} the frequency"),
+        "damping_ratio_error": variable("mode", damping_band, "1", f"{BAND} the damping ratio"),
+        "frequency_film_law": variable("mode", frequency_law, "Hz", f"{LEFT_OUT} of the frequency"),
+        "damping_ratio_film_law": variable("mode", damping_law, "1", f"{LEFT_OUT} of the damping ratio"),
+        "frequency_reduction": variable("mode", frequency_rest, "Hz", f"{REDUCED} of the frequency"),
+        "damping_ratio_reduction": variable("mode", damping_rest, "1", f"{REDUCED} of the damping ratio"),
+        "eigenvalue_real": variable("mode", found.eigenvalues.real, "1/s", "decay"),
+        "eigenvalue_imaginary": variable("mode", found.eigenvalues.imag, "rad/s", "damped frequency"),
+        "energy_share": variable(("part", "mode"), found.shares, "1", "part of the strain energy of the mode"),
         **real,
         **imaginary,
     }
@@ -459,26 +443,23 @@ def linear_dataset(
     quantities = [sensor.quantity for sensor in sensors]
     units = "m, m/s or m/s2 by the sensor's quantity (rad for rotations), per N, N m or m"
     variables = {
-        "response_real": (dims, responses.real, {"units": units, "long_name": "real part of the response"}),
-        "response_imaginary": (dims, responses.imag, {"units": units, "long_name": "imaginary part of the response"}),
-        "response_level_error": (
+        "response_real": variable(dims, responses.real, units, "real part of the response"),
+        "response_imaginary": variable(dims, responses.imag, units, "imaginary part of the response"),
+        "response_level_error": variable(
             dims,
             np.full(responses.shape, np.nan) if level_error is None else level_error,
-            {"units": "dB", "long_name": f"{BAND} the level of the response"},
+            "dB",
+            f"{BAND} the level of the response",
         ),
-        "A": (("state", "of_state"), space.A, {"units": "SI", "long_name": "system matrix"}),
-        "B": (("state", "input"), space.B, {"units": "SI", "long_name": "input matrix"}),
-        "C": (("sensor", "of_state"), space.C, {"units": "SI", "long_name": "output matrix"}),
-        "D": (("sensor", "input"), space.D, {"units": "SI", "long_name": "feedthrough"}),
-        "quantity": ("sensor", quantities, {"long_name": "what the sensor measures"}),
-        "amplitude": (
-            "input",
-            [entry.amplitude for entry in inputs],
-            {"units": "N, N m or m", "long_name": "amplitude in operation"},
-        ),
+        "A": variable(("state", "of_state"), space.A, "SI", "system matrix"),
+        "B": variable(("state", "input"), space.B, "SI", "input matrix"),
+        "C": variable(("sensor", "of_state"), space.C, "SI", "output matrix"),
+        "D": variable(("sensor", "input"), space.D, "SI", "feedthrough"),
+        "quantity": variable("sensor", quantities, "", "what the sensor measures"),
+        "amplitude": variable("input", [entry.amplitude for entry in inputs], "N, N m or m", "amplitude in operation"),
     }
     coordinates = {
-        "frequency": ("frequency", frequencies, {"units": "Hz", "long_name": "frequency"}),
+        "frequency": variable("frequency", frequencies, "Hz", "frequency"),
         "sensor": [sensor.name for sensor in sensors],
         "input": [entry.name for entry in inputs],
         "state": states,
@@ -498,8 +479,8 @@ def run_dataset(system: System, run: Recording) -> xr.Dataset:
         What was recorded.
     """
     variables: dict[str, Any] = {
-        "speed": ("time", run.speed, {"units": "rad/s", "long_name": "speed of the system"}),
-        "angle": ("time", run.angle, {"units": "rad", "long_name": "angle turned"}),
+        "speed": variable("time", run.speed, "rad/s", "speed of the system"),
+        "angle": variable("time", run.angle, "rad", "angle turned"),
         **_ring_variables(system, run.forces, ("time",)),
     }
     for order, values in (
@@ -510,13 +491,14 @@ def run_dataset(system: System, run: Recording) -> xr.Dataset:
         if values.shape[0] > 0:
             variables |= _by_kind(system, values, ("time",), order)
     names = _bearing_names(system)
-    variables["outside_calls"] = (
+    variables["outside_calls"] = variable(
         "bearing",
         np.array([run.outside[str(name)] for name in names], dtype=np.int64),
-        {"units": "1", "long_name": "law calls outside the map"},
+        "1",
+        "law calls outside the map",
     )
     coordinates: dict[str, Any] = {
-        "time": ("time", run.time, {"units": "s", "long_name": "time"}),
+        "time": variable("time", run.time, "s", "time"),
         "bearing": names,
     }
     if run.states.displacement.shape[0] > 0:
@@ -537,13 +519,11 @@ def _by_kind(system: System, values: FloatArray, dims: tuple[str, ...], order: s
             name = order if dim == "translation" else f"{dim}_{order}"
             if dim == "rotation" and order == "displacement":
                 name = "rotation"
-            variables[name] = (
+            variables[name] = variable(
                 (*dims, f"{dim}_coordinate"),
                 values[..., here],
-                {
-                    "units": f"{unit}, scaled" if shape else f"{unit}{per}",
-                    "long_name": f"{order.replace('_', ' ')}, {words}" if shape or per else words,
-                },
+                f"{unit}, scaled" if shape else f"{unit}{per}",
+                f"{order.replace('_', ' ')}, {words}" if shape or per else words,
             )
     return variables
 
@@ -563,10 +543,11 @@ def _ring_variables(
         return {}
     rings = np.stack([forces[i][..., :6] for i in bearings], axis=len(dims))
     return {
-        name: (
+        name: variable(
             (*dims, "bearing", "direction"),
             rings[..., part],
-            {"units": unit, "long_name": f"{name.split('_')[1]} of the bearing on its inner ring: x, y, z"},
+            unit,
+            f"{name.split('_')[1]} of the bearing on its inner ring: x, y, z",
         )
         for name, unit, part in (("bearing_force", "N", slice(0, 3)), ("bearing_moment", "N m", slice(3, 6)))
     }

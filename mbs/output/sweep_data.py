@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.arrays import ComplexArray, FloatArray, variable
 from mbs.linearised.critical import CriticalSpeed, OrderResponse, orbit, turning_places
 from mbs.linearised.sweep_result import Sweep
 from mbs.model.elements import Sensor
@@ -24,6 +25,7 @@ UNDAMPED = ("case", "speed", "mode")
 DAMPED = ("case", "speed", "complex_mode")
 BEARING = ("case", "speed", "bearing")
 RESPONSE = ("case", "speed", "response_frequency", "sensor", "input")
+_PART_OF_MODE, _PART_OF_DAMPED = ("case", "part", "speed", "mode"), ("case", "part", "speed", "complex_mode")
 PEAK = ("case", "speed", "response_peak", "sensor", "input")
 
 RESPONSE_UNITS = "m, m/s or m/s2 by the sensor's quantity (rad for rotations), per N, N m or m"
@@ -39,260 +41,106 @@ class Variable:
         Name, units and meaning, written to the file.
     dims : tuple of str
         Dims of the variable, the cases first.
-    read : callable
-        Takes it from the sweep of one case, in the order of the other dims.
+    path : str
+        Attribute of the sweep of one case that it is, in the order of the other dims.
+    from_one : bool
+        Whether it is a number of a mode, which files count from one on.
     """
 
     name: str
     units: str
     long_name: str
     dims: tuple[str, ...]
-    read: Callable[[Sweep], npt.ArrayLike]
+    path: str
+    from_one: bool = False
 
     def entry(self, sweeps: Sequence[Sweep]) -> _Entry:
         """Return the variable of some cases side by side; complex modes and peaks beyond those of a case are NaN."""
-        values = [np.asarray(self.read(sweep)) for sweep in sweeps]
+        values = [np.asarray(attrgetter(self.path)(sweep)) for sweep in sweeps]
+        values = [value + 1.0 for value in values] if self.from_one else values
         for own in {"complex_mode", "response_peak"}.intersection(self.dims):
             values = _filled(values, self.dims.index(own) - 1)
         return self.dims, np.stack(values), _said(self.units, self.long_name)
 
 
+def _of(part: str, prefix: str, dims: tuple[str, ...], *rows: tuple[str, str, str]) -> tuple[Variable, ...]:
+    """Variables of a part of a sweep that are called as its attributes, behind a prefix."""
+    return tuple(Variable(f"{prefix}{name}", units, words, dims, f"{part}.{name}") for name, units, words in rows)
+
+
+_OVER_PITCH = "varies over the cage angles"
+_FREQUENCY = f"half of what the frequency of the complex mode {_OVER_PITCH}"
+_RATIO = f"half of what the damping ratio of the complex mode {_OVER_PITCH}"
+_NEAREST = "number of the undamped mode that the complex one is nearest to where it begins"
+_LIKE = "number of the mode whose shape at the last speed is most like that of this one at the first"
+
 VARIABLES = (
-    Variable(
-        "frequency",
-        "Hz",
-        "frequency of mass and stiffness, without damping and gyroscopic terms",
-        UNDAMPED,
-        lambda sweep: sweep.undamped.frequency,
+    *_of(
+        "undamped", "", UNDAMPED,
+        ("frequency", "Hz", "frequency of mass and stiffness, without damping and gyroscopic terms"),
+        ("frequency_error", "Hz", f"{BAND} the frequency"),
+        ("frequency_spread", "Hz", f"half of what the frequency {_OVER_PITCH}, to first order"),
+        ("damping_ratio", "1", "modal damping ratio"),
+        ("bearing_share", "1", "part of the strain energy in all bearings"),
+        ("assurance", "1", "modal assurance on the way from the speed before"),
+        ("summed_shift", "1", "change of the frequency from the first speed by energy, summed over the steps"),
     ),
-    Variable("frequency_error", "Hz", f"{BAND} the frequency", UNDAMPED, lambda sweep: sweep.undamped.frequency_error),
-    Variable(
-        "frequency_spread",
-        "Hz",
-        "half of what the frequency varies over the cage angles, to first order",
-        UNDAMPED,
-        lambda sweep: sweep.undamped.frequency_spread,
+    Variable("energy_share", "1", "part of the strain energy of the mode", _PART_OF_MODE, "undamped.shares"),
+    *_of(
+        "undamped", "", ("case", "mode"),
+        ("direct_shift", "1", "change of the frequency from first to last speed by energy, in one step"),
     ),
-    Variable("damping_ratio", "1", "modal damping ratio", UNDAMPED, lambda sweep: sweep.undamped.damping_ratio),
-    Variable(
-        "energy_share",
-        "1",
-        "part of the strain energy of the mode",
-        ("case", "part", "speed", "mode"),
-        lambda sweep: sweep.undamped.shares,
+    Variable("resembles", "1", _LIKE, ("case", "mode"), "undamped.resembles", from_one=True),
+    *_of(
+        "damped", "complex_", DAMPED,
+        ("frequency", "Hz", "|eigenvalue|/(2 pi) of oscillating complex modes"),
+        ("damping_ratio", "1", "damping ratio of complex modes"),
+        ("frequency_error", "Hz", f"{BAND} the frequency of the complex mode"),
+        ("damping_ratio_error", "1", f"{BAND} the damping ratio of the complex mode"),
+        ("frequency_spread", "Hz", f"{_FREQUENCY}, to first order"),
+        ("damping_ratio_spread", "1", f"{_RATIO}, to first order"),
+        ("bearing_share", "1", "part of the strain energy of the complex mode in all bearings"),
+        ("assurance", "1", "assurance of the complex mode on the way from the speed before"),
     ),
-    Variable(
-        "bearing_share",
-        "1",
-        "part of the strain energy in all bearings",
-        UNDAMPED,
-        lambda sweep: sweep.undamped.bearing_share,
+    *(
+        Variable(f"complex_{name}_reduction", unit, f"{REDUCED} of the {words} of the complex mode", DAMPED,
+                 f"damped.reduction.{name}")
+        for name, unit, words in (("frequency", "Hz", "frequency"), ("damping_ratio", "1", "damping ratio"))
     ),
-    Variable(
-        "assurance",
-        "1",
-        "modal assurance on the way from the speed before",
-        UNDAMPED,
-        lambda sweep: sweep.undamped.assurance,
+    Variable("complex_energy_share", "1", "part of the strain energy of the complex mode", _PART_OF_DAMPED,
+             "damped.shares"),
+    Variable("complex_number", "1", _NEAREST, ("case", "complex_mode"), "damped.number", from_one=True),
+    Variable("eigenvalue_real", "1/s", "decay", DAMPED, "damped.eigenvalues.real"),
+    Variable("eigenvalue_imaginary", "rad/s", "damped frequency", DAMPED, "damped.eigenvalues.imag"),
+    *_of(
+        "damped", "", DAMPED,
+        ("whirl", "1", "d omega/d Omega by gyroscopic terms: positive forward, negative backward"),
     ),
-    Variable(
-        "summed_shift",
-        "1",
-        "change of the frequency from the first speed by energy, summed over the steps",
-        UNDAMPED,
-        lambda sweep: sweep.undamped.summed_shift,
+    *_of(
+        "bearings", "bearing_", BEARING,
+        ("load", "N", "radial force"),
+        ("stiffness", "N/m", "stiffness of the bearing along its force"),
+        ("damping", "N s/m", "damping of the bearing along its force"),
+        ("stiffness_error", "N/m", f"{BAND} the stiffness"),
+        ("damping_error", "N s/m", f"{BAND} the damping"),
+        ("stiffness_spread", "1", f"half of what the stiffness {_OVER_PITCH}, as a part of the mean"),
+        ("damping_spread", "1", f"half of what the damping {_OVER_PITCH}, as a part of the mean"),
     ),
-    Variable(
-        "direct_shift",
-        "1",
-        "change of the frequency from first to last speed by energy, in one step",
-        ("case", "mode"),
-        lambda sweep: sweep.undamped.direct_shift,
-    ),
-    Variable(
-        "complex_frequency",
-        "Hz",
-        "|eigenvalue|/(2 pi) of oscillating complex modes",
-        DAMPED,
-        lambda sweep: sweep.damped.frequency,
-    ),
-    Variable(
-        "complex_damping_ratio",
-        "1",
-        "damping ratio of complex modes",
-        DAMPED,
-        lambda sweep: sweep.damped.damping_ratio,
-    ),
-    Variable(
-        "complex_frequency_error",
-        "Hz",
-        f"{BAND} the frequency of the complex mode",
-        DAMPED,
-        lambda sweep: sweep.damped.frequency_error,
-    ),
-    Variable(
-        "complex_damping_ratio_error",
-        "1",
-        f"{BAND} the damping ratio of the complex mode",
-        DAMPED,
-        lambda sweep: sweep.damped.damping_ratio_error,
-    ),
-    Variable(
-        "complex_frequency_reduction",
-        "Hz",
-        f"{REDUCED} of the frequency of the complex mode",
-        DAMPED,
-        lambda sweep: sweep.damped.reduction.frequency,
-    ),
-    Variable(
-        "complex_damping_ratio_reduction",
-        "1",
-        f"{REDUCED} of the damping ratio of the complex mode",
-        DAMPED,
-        lambda sweep: sweep.damped.reduction.damping_ratio,
-    ),
-    Variable(
-        "complex_frequency_spread",
-        "Hz",
-        "half of what the frequency of the complex mode varies over the cage angles, to first order",
-        DAMPED,
-        lambda sweep: sweep.damped.frequency_spread,
-    ),
-    Variable(
-        "complex_damping_ratio_spread",
-        "1",
-        "half of what the damping ratio of the complex mode varies over the cage angles, to first order",
-        DAMPED,
-        lambda sweep: sweep.damped.damping_ratio_spread,
-    ),
-    Variable("eigenvalue_real", "1/s", "decay", DAMPED, lambda sweep: sweep.damped.eigenvalues.real),
-    Variable(
-        "eigenvalue_imaginary",
-        "rad/s",
-        "damped frequency",
-        DAMPED,
-        lambda sweep: sweep.damped.eigenvalues.imag,
-    ),
-    Variable(
-        "complex_energy_share",
-        "1",
-        "part of the strain energy of the complex mode",
-        ("case", "part", "speed", "complex_mode"),
-        lambda sweep: sweep.damped.shares,
-    ),
-    Variable(
-        "complex_bearing_share",
-        "1",
-        "part of the strain energy of the complex mode in all bearings",
-        DAMPED,
-        lambda sweep: sweep.damped.bearing_share,
-    ),
-    Variable(
-        "whirl",
-        "1",
-        "d omega/d Omega by gyroscopic terms: positive forward, negative backward",
-        DAMPED,
-        lambda sweep: sweep.damped.whirl,
-    ),
-    Variable(
-        "complex_assurance",
-        "1",
-        "assurance of the complex mode on the way from the speed before",
-        DAMPED,
-        lambda sweep: sweep.damped.assurance,
-    ),
-    Variable(
-        "complex_number",
-        "1",
-        "number of the undamped mode that the complex one is nearest to where it begins",
-        ("case", "complex_mode"),
-        lambda sweep: sweep.damped.number + 1.0,
-    ),
-    Variable(
-        "resembles",
-        "1",
-        "number of the mode whose shape at the last speed is most like that of this one at the first",
-        ("case", "mode"),
-        lambda sweep: sweep.undamped.resembles + 1.0,
-    ),
-    Variable("bearing_load", "N", "radial force", BEARING, lambda sweep: sweep.bearings.load),
-    Variable(
-        "bearing_stiffness",
-        "N/m",
-        "stiffness of the bearing along its force",
-        BEARING,
-        lambda sweep: sweep.bearings.stiffness,
-    ),
-    Variable(
-        "bearing_damping",
-        "N s/m",
-        "damping of the bearing along its force",
-        BEARING,
-        lambda sweep: sweep.bearings.damping,
-    ),
-    Variable(
-        "bearing_stiffness_error",
-        "N/m",
-        f"{BAND} the stiffness",
-        BEARING,
-        lambda sweep: sweep.bearings.stiffness_error,
-    ),
-    Variable(
-        "bearing_damping_error",
-        "N s/m",
-        f"{BAND} the damping",
-        BEARING,
-        lambda sweep: sweep.bearings.damping_error,
-    ),
-    Variable(
-        "bearing_stiffness_spread",
-        "1",
-        "half of what the stiffness varies over the cage angles, as a part of the mean",
-        BEARING,
-        lambda sweep: sweep.bearings.stiffness_spread,
-    ),
-    Variable(
-        "bearing_damping_spread",
-        "1",
-        "half of what the damping varies over the cage angles, as a part of the mean",
-        BEARING,
-        lambda sweep: sweep.bearings.damping_spread,
-    ),
-    Variable("between", "1", "speeds put in between to follow the modes", ("case",), lambda sweep: sweep.between),
-)
+    Variable("between", "1", "speeds put in between to follow the modes", ("case",), "between"),
+)  # fmt: skip
 """Of every sweep."""
 
+_AROUND = "frequency of each peak of the response, with more frequencies around lightly damped modes"
+
 RESPONSES = (
-    Variable(
-        "response_real",
-        RESPONSE_UNITS,
-        "real part of the response",
-        RESPONSE,
-        lambda sweep: sweep.responses.values.real,
+    Variable("response_real", RESPONSE_UNITS, "real part of the response", RESPONSE, "responses.values.real"),
+    Variable("response_imaginary", RESPONSE_UNITS, "imaginary part of the response", RESPONSE, "responses.values.imag"),
+    *_of("responses", "", PEAK, ("peak_frequency", "Hz", _AROUND), ("peak_size", RESPONSE_UNITS, "size of each peak")),
+    *_of(
+        "responses", "response_", ("case", "speed"),
+        ("error", "1", "largest relative error seen beside direct solutions"),
     ),
-    Variable(
-        "response_imaginary",
-        RESPONSE_UNITS,
-        "imaginary part of the response",
-        RESPONSE,
-        lambda sweep: sweep.responses.values.imag,
-    ),
-    Variable(
-        "peak_frequency",
-        "Hz",
-        "frequency of each peak of the response, with more frequencies around lightly damped modes",
-        PEAK,
-        lambda sweep: sweep.responses.peak_frequency,
-    ),
-    Variable("peak_size", RESPONSE_UNITS, "size of each peak", PEAK, lambda sweep: sweep.responses.peak_size),
-    Variable(
-        "response_error",
-        "1",
-        "largest relative error seen beside direct solutions",
-        ("case", "speed"),
-        lambda sweep: sweep.responses.error,
-    ),
-)
+)  # fmt: skip
 """Of a sweep with inputs, sensors and frequencies."""
 
 
@@ -320,7 +168,7 @@ def sweep_dataset(
     modes = max(sweep.damped.eigenvalues.shape[1] for sweep in sweeps)
     variables = {entry.name: entry.entry(sweeps) for entry in VARIABLES}
     variables |= {
-        "law": (("case",), list(laws), {"long_name": "contact law"}),
+        "law": variable(("case",), list(laws), "", "contact law"),
         "clearance": (("case",), np.array(clearances), _said("m", "diametral clearance")),
         "load_factor": (("case",), np.array(load_factors), _said("1", "factor of all loads of the scene")),
     }
@@ -336,7 +184,7 @@ def sweep_dataset(
     if responses.values.size:
         variables |= {entry.name: entry.entry(sweeps) for entry in RESPONSES}
         quantities = [sensor.quantity for sensor in responses.sensors]
-        variables["quantity"] = (("sensor",), quantities, {"long_name": "what the sensor measures"})
+        variables["quantity"] = variable(("sensor",), quantities, "", "what the sensor measures")
         coordinates |= {
             "response_frequency": ("response_frequency", responses.frequencies, _said("Hz", "frequency")),
             "sensor": [sensor.name for sensor in responses.sensors],
@@ -429,8 +277,11 @@ def critical_dataset(
         One an order.
     """
 
-    def column(unit: str, words: str, values: Sequence[float]) -> tuple[str, FloatArray, dict[str, str]]:
-        return "critical", np.array(values, dtype=np.float64), {"units": unit, "long_name": words}
+    def column(unit: str, words: str, values: Sequence[float]) -> tuple[Any, Any, dict[str, str]]:
+        return variable("critical", np.array(values, dtype=np.float64), unit, words)
+
+    over_speed, none = ("sweep_speed", "complex_mode"), "frequency of the damped oscillation; none where overdamped"
+    damped = sweep.damped.eigenvalues.imag / (2.0 * np.pi)
 
     variables = {
         "critical_speed": column("rad/s", "critical speed of the system", [entry.speed for entry in found]),
@@ -443,21 +294,13 @@ def critical_dataset(
             "1", "direction of whirl: 1 with the spin on circles, -1 against it, 0 in a plane",
             [entry.whirl for entry in found],
         ),
-        "damped_frequency": (
-            ("sweep_speed", "complex_mode"),
-            sweep.damped.eigenvalues.imag / (2.0 * np.pi),
-            {"units": "Hz", "long_name": "frequency of the damped oscillation; none where overdamped"},
-        ),
-        "damping_ratio": (
-            ("sweep_speed", "complex_mode"),
-            sweep.damped.damping_ratio,
-            {"units": "1", "long_name": "damping ratio of the complex mode"},
-        ),
+        "damped_frequency": variable(over_speed, damped, "Hz", none),
+        "damping_ratio": variable(over_speed, sweep.damped.damping_ratio, "1", "damping ratio of the complex mode"),
     }  # fmt: skip
     coordinates = {
-        "sweep_speed": ("sweep_speed", sweep.speeds, {"units": "rad/s", "long_name": "speed of the system"}),
-        "speed": ("speed", speeds, {"units": "rad/s", "long_name": "speed of the system"}),
-        "order": ("order", [entry.order for entry in responses], {"units": "1", "long_name": "order of the loads"}),
+        "sweep_speed": variable("sweep_speed", sweep.speeds, "rad/s", "speed of the system"),
+        "speed": variable("speed", speeds, "rad/s", "speed of the system"),
+        "order": variable("order", [entry.order for entry in responses], "1", "order of the loads"),
         "sensor": [sensor.name for sensor in sensors],
     }
     if responses:
@@ -465,21 +308,20 @@ def critical_dataset(
         dims = ("order", "speed", "sensor")
         for name, part in (("real", amplitudes.real), ("imaginary", amplitudes.imag)):
             words = f"{name} part of the amplitude: the signal is Re[amplitude exp(i order angle)]"
-            variables[f"response_{name}"] = (dims, part, {"units": _RESPONSE_UNITS, "long_name": words})
+            variables[f"response_{name}"] = variable(dims, part, _RESPONSE_UNITS, words)
         ellipses = [orbits(system, entry) for entry in responses]
         coordinates["place"] = list(ellipses[0][0])
         axes = np.array([part for _, part in ellipses])
         for index, name in enumerate(("major", "minor")):
             words = f"{name} semi-axis of the orbit" + (", negative from z to y" if index else "")
-            variables[f"orbit_{name}"] = (
-                ("order", "speed", "place"), axes[..., index], {"units": "m", "long_name": words},
-            )  # fmt: skip
+            variables[f"orbit_{name}"] = variable(("order", "speed", "place"), axes[..., index], "m", words)
         coordinates["element"] = [connected.element.name for connected in system.elements]
         sizes = np.array([orbit(entry.forces[..., 0], entry.forces[..., 1])[0] for entry in responses])
-        variables["element_force"] = (
+        variables["element_force"] = variable(
             ("order", "speed", "element"),
             sizes,
-            {"units": "N", "long_name": "largest radial force of a bearing or table over a turn, without its mean"},
+            "N",
+            "largest radial force of a bearing or table over a turn, without its mean",
         )
     return xr.Dataset(variables, coords=coordinates, attrs={"loads": _loads(responses)})
 
