@@ -12,12 +12,12 @@ import dataclasses
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
+from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, VALLEY_OIL_NUMBER
 from ehdmaps.physics.lubricant import Lubricant
@@ -42,9 +42,6 @@ from mbs.planning.plan import PlanSettings, plan
 from mbs.planning.ranges import Needed
 from mbs.scene.fields import HERTZ, MICROMETRE
 from mbs.scene.scene import Scene
-
-if TYPE_CHECKING:
-    from mbs.planning.seen import Seen
 
 TOLERANCE = 0.05
 """Change of a stiffness or damping of a contact above which physics matters, as a part of it."""
@@ -169,8 +166,7 @@ def verdicts(scene: Scene, settings: AutoSettings | None = None) -> tuple[Verdic
     assert oil is not None  # the plan saw to it
     carrying: list[ClosedContact] = []
     idle: list[ClosedContact] = []
-    entries: tuple[Needed | Seen, ...] = (*found.needed, *found.seen)
-    for entry in entries:
+    for entry in (*found.needed, *found.seen):
         lightest, most = SHARES[0] * entry.static_load, SHARES[1] * entry.static_load
         loads = np.geomspace(lightest, most, _LOADS), np.geomspace(min(entry.load[0], lightest), lightest, _LOADS)
         for speed in np.unique(np.geomspace(*entry.entrainment_speed, _SPEEDS)).tolist():
@@ -210,9 +206,9 @@ def switched(found: Sequence[Verdict]) -> Mapping[str, str]:
     return chosen
 
 
-def _lines(entry: Needed | Seen) -> tuple[LineContact, ...]:
+def _lines(entry: Needed) -> tuple[LineContact, ...]:
     """The inner and the outer contact of a bearing; none of balls, whose contacts are points."""
-    if isinstance(entry, Needed):
+    if isinstance(entry.geometry, BearingGeometry):
         return entry.geometry.contacts(STEEL, "iso16281")
     return () if entry.of_points else cylinder_of(entry.geometry).contacts(STEEL, "iso16281")
 

@@ -6,7 +6,6 @@ import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.job import Job, check_oil
@@ -20,9 +19,6 @@ from mbs.planning import ranges
 from mbs.planning.ranges import Needed
 from mbs.scene.assembly import Model, assemble
 from mbs.scene.scene import Scene
-
-if TYPE_CHECKING:
-    from mbs.planning.seen import Seen
 
 LOADS_PER_DECADE, SPEEDS_PER_DECADE = 6, 5
 """As close as in the shipped jobs; contact laws choose lines of their own besides."""
@@ -148,7 +144,7 @@ class PlanResult:
         Lowest and highest speed of the system [rad/s].
     needed : tuple of Needed
         Ranges of a map by geometry; none without cylindrical roller bearings.
-    seen : tuple of Seen
+    seen : tuple of Needed
         Ranges of the other bearings by geometry, of balls, tapered or ribbed rollers.
     """
 
@@ -156,7 +152,7 @@ class PlanResult:
     model: Model
     speeds: tuple[float, float]
     needed: tuple[Needed, ...]
-    seen: tuple[Seen, ...]
+    seen: tuple[Needed, ...]
 
     def jobs(self, names: Sequence[str] = ()) -> tuple[Job, ...]:
         """Jobs that cover the ranges, one a geometry, read back by the reader of jobs.
@@ -287,9 +283,7 @@ def _planned(scene: Scene, model: Model, settings: PlanSettings) -> PlanResult:
     static = [max(pair) for pair in zip(dry, preloaded, strict=True)]
     loads = [load + more for load, more in zip(static, centrifugal, strict=False)]
     needed = ranges.needed_ranges(model.bearings, loads, rooms, speeds, settings.margin)
-    seen: tuple[Seen, ...] = ()
-    if len(static) > mapped:
-        from mbs.planning.seen import seen_ranges  # with the films of points
-
-        seen = seen_ranges(model.located, static[mapped:], speeds, scene.temperature, settings.margin)
-    return PlanResult(scene, model, speeds, needed, seen)
+    others = ranges.needed_ranges(
+        model.located, static[mapped:], [0.0] * len(model.located), speeds, settings.margin, scene.temperature
+    )
+    return PlanResult(scene, model, speeds, needed, others)

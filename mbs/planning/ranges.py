@@ -14,6 +14,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from ehdmaps.physics.films import moes_central
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import film_from_moes, moes_groups
 from ehdmaps.physics.solids import STEEL
+from ehdmaps.units import LOAD, Display
 from mbs.bearings.bearing_element import BearingElement
 from mbs.linearised.averaged import pitch
 from mbs.model.elements import Operation
@@ -30,6 +32,7 @@ from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import Constant, Course, Harmonic, LoadProfile
 from mbs.model.system import System
 from mbs.scene.assembly import AnyBearing
+from mbs.scene.fields import FORCE
 
 ANGLES = 12
 """Angles within one pitch of the rollers."""
@@ -57,33 +60,41 @@ DIGITS = 2
 
 @dataclass(frozen=True)
 class Needed:
-    """Operating ranges that the bearings of one geometry need.
+    """Operating ranges of the bearings of one geometry.
 
     Attributes
     ----------
-    geometry : BearingGeometry
+    geometry : BearingGeometry, BallGeometry or TaperedGeometry
         One of theirs.
     bearings : tuple of str
         Their names.
     load : (float, float)
-        Lowest and highest load per unit length [N/m].
+        Lowest and highest load per unit length [N/m], or load of a ball [N].
     entrainment_speed : (float, float)
         Lowest and highest [m/s].
     temperature : float
         Temperature of the raceways [K].
     static_load : float
-        Largest load of a slice at rest, centrifugal load included [N/m].
+        Largest load at rest of a slice, centrifugal load included, or of a ball, in the unit of `load`.
     film_room : float
-        How much diametral clearance the films take up at the highest speed [m].
+        How much diametral clearance the films take up at the highest speed [m]; 0 where no map is made.
+    of_points : bool
+        Whether its contacts are points, else lines.
     """
 
-    geometry: BearingGeometry
+    geometry: Any
     bearings: tuple[str, ...]
     load: tuple[float, float]
     entrainment_speed: tuple[float, float]
     temperature: float
     static_load: float
     film_room: float
+    of_points: bool = False
+
+    @property
+    def display(self) -> Display:
+        """Unit in which its loads are told."""
+        return FORCE if self.of_points else LOAD
 
 
 def same_contacts(geometry: BearingGeometry) -> tuple[float, float, float, float]:
@@ -223,26 +234,29 @@ def film_room(
 
 
 def needed_ranges(
-    bearings: Sequence[BearingElement],
+    bearings: Sequence[AnyBearing],
     static_loads: Sequence[float],
     rooms: Sequence[float],
     speeds: tuple[float, float],
     margin: float = MARGIN,
+    temperature: float = math.nan,
 ) -> tuple[Needed, ...]:
     """Ranges that each geometry needs, in the order of the bearings.
 
     Parameters
     ----------
-    bearings : sequence of BearingElement
-        Those of the system.
+    bearings : sequence of BearingElement or LocatingElement
+        Those of the system that have maps, or those that have none.
     static_loads : sequence of float
-        Largest load of each bearing, from `largest_loads` and the centrifugal load [N/m].
+        Largest load of each bearing, from `largest_loads` and the centrifugal load [N/m], or [N] of balls.
     rooms : sequence of float
         Room of the films of each bearing, from `film_room` [m].
     speeds : (float, float)
         Lowest and highest speed of the system [rad/s].
     margin : float
         Highest load over the static one, 1 to `MOST_MARGIN`.
+    temperature : float
+        Temperature of the raceways of bearings that have no maps [K].
 
     Raises
     ------
@@ -253,49 +267,36 @@ def needed_ranges(
     """
     if not 1.0 <= margin <= MOST_MARGIN:
         raise InputError(f"plan, margin: got {margin!r}; allowed: 1 to {MOST_MARGIN:g}")
-    groups: dict[tuple[float, ...], list[int]] = {}
+    groups: dict[object, list[int]] = {}
     for index, bearing in enumerate(bearings):
-        groups.setdefault(same_contacts(bearing.bearing.geometry), []).append(index)
+        mapped = isinstance(bearing, BearingElement)
+        groups.setdefault(same_contacts(bearing.bearing.geometry) if mapped else bearing.same_films, []).append(index)
     found = []
     for members in groups.values():
         names = tuple(bearings[index].name for index in members)
         load = max(static_loads[index] for index in members)
-        rates = [bearings[index].rates[1] for index in members if bearings[index].rates[1] > 0.0]
-        if problem := idle_problem(names, load, rates):
-            raise AnalysisError(problem)
-        highest = margin * load
+        rates = [rate for index in members if (rate := bearings[index].entrainment_rate) > 0.0]
+        if not (load > 0.0 and rates):
+            raise AnalysisError(
+                f"plan: the rollers of {', '.join(names)} {'carry no load' if rates else 'do not roll'} in any "
+                "equilibrium of the scene, so that no range can be told; give the scene loads, spins, or a smaller "
+                "clearance"
+            )
+        one, highest = bearings[members[0]], margin * load
+        mapped, of_points = isinstance(one, BearingElement), getattr(one, "of_points", False)
         found.append(
             Needed(
-                geometry=bearings[members[0]].bearing.geometry,
+                geometry=one.bearing.geometry if mapped else one.force.geometry,
                 bearings=names,
-                load=(min(LIGHTEST * highest, LIGHT), highest),
+                load=(LIGHTEST * highest if of_points else min(LIGHTEST * highest, LIGHT), highest),
                 entrainment_speed=(min(rates) * speeds[0], max(rates) * speeds[1]),
-                temperature=bearings[members[0]].temperature,
+                temperature=one.temperature if mapped else temperature,
                 static_load=load,
                 film_room=max(rooms[index] for index in members),
+                of_points=of_points,
             )
         )
     return tuple(found)
-
-
-def idle_problem(names: Sequence[str], load: float, rates: Sequence[float]) -> str:
-    """Say why no range can be told of bearings; empty where one can.
-
-    Parameters
-    ----------
-    names : sequence of str
-        Their names.
-    load : float
-        Their largest load at rest.
-    rates : sequence of float
-        Entrainment speeds of those that roll, by the speed of the system [m].
-    """
-    if load > 0.0 and rates:
-        return ""
-    return (
-        f"plan: the rollers of {', '.join(names)} {'carry no load' if rates else 'do not roll'} in any equilibrium of "
-        "the scene, so that no range can be told; give the scene loads, spins, or a smaller clearance"
-    )
 
 
 def outward(low: float, high: float) -> tuple[float, float]:
