@@ -7,12 +7,13 @@ three of them in turn.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
-from typing import NamedTuple
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 Way = Callable[[bytes, np.random.Generator, bytes], bytes]
+Parts = TypeVar("Parts", bytes, list[bytes])
 
 NUMBERS = (
     *("nan", "inf", "-inf", "1e999", "-1e999", "1e-999", "-0", "0", "-1", "1e308", "5e-324", "0.1", "2.5", "3"),
@@ -42,6 +43,7 @@ _MEANINGS = ("another number", "scaled number", "swapped numbers", "another unit
 """Ways that mostly leave a file readable, so that what is read is looked at: they are taken more often."""
 
 _NUMBER = re.compile(rb"[-+]?[0-9]+[.]?[0-9]*(?:[eE][-+]?[0-9]+)?")
+_BEGIN = re.compile(rb"(?m)^.")
 _UNIT = re.compile(rb"(?<=[0-9] )[A-Za-z][A-Za-z0-9/^ *]*(?=\")")
 
 
@@ -75,183 +77,136 @@ def damage(content: bytes, text: bool, rng: np.random.Generator, other: bytes) -
     return Damaged(" + ".join(names), content)
 
 
-def _place(content: bytes, rng: np.random.Generator) -> int:
-    """Draw a place, the end included."""
-    return int(rng.integers(len(content) + 1))
+def _place(parts: Sequence[Any], rng: np.random.Generator) -> int:
+    """Somewhere between the bytes, or the lines."""
+    return int(rng.integers(len(parts) + 1))
 
 
-def _part(content: bytes, rng: np.random.Generator, longest: int = 400) -> tuple[int, int]:
-    """Begin and end of a part."""
-    begin = _place(content, rng)
-    return begin, min(len(content), begin + int(rng.integers(1, longest + 1)))
+def _span(parts: Parts, rng: np.random.Generator) -> tuple[int, int]:
+    """Where a part of a file begins and ends: a line; or some hundred bytes, or all from or up to a place."""
+    begin, most = _place(parts, rng), len(parts)
+    if isinstance(parts, list):
+        return begin, begin + 1
+    end = min(most, begin + int(rng.integers(1, 401)))
+    return ((begin, end), (begin, end), (begin, most), (0, end))[rng.integers(4)]
 
 
-def _changed(content: bytes, rng: np.random.Generator, change: Callable[[int], int]) -> bytes:
-    """Change some bytes."""
-    changed = bytearray(content)
-    for place in rng.integers(len(changed), size=int(rng.integers(1, 9))) if content else ():
-        changed[place] = change(changed[place])
-    return bytes(changed)
+def _lost(parts: Parts, rng: np.random.Generator, other: Parts) -> Parts:
+    """A part lost."""
+    begin, end = _span(parts, rng)
+    return parts[:begin] + parts[end:]
 
 
-def _cut_out(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
-    """A part is lost."""
-    begin, end = _part(content, rng)
-    return content[:begin] + content[end:]
+def _twice(parts: Parts, rng: np.random.Generator, other: Parts) -> Parts:
+    """A part twice, one after the other."""
+    begin, end = _span(parts, rng)
+    return parts[:end] + parts[begin:end] + parts[end:]
 
 
-def _twice(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
-    """A part stands there twice; now and then the whole."""
-    if rng.random() < 0.1:
-        return content + content
-    begin, end = _part(content, rng)
-    return content[:end] + content[begin:end] + content[end:]
+def _grafted(parts: Parts, rng: np.random.Generator, other: Parts) -> Parts:
+    """A part of another file put in, or in the place of the rest."""
+    begin, end = _span(other, rng)
+    place = _place(parts, rng)
+    return parts[:place] + other[begin:end] + (parts[place:] if rng.random() < 0.7 else parts[:0])
 
 
-def _grafted(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
-    """A part of another file."""
-    begin, end = _part(other, rng)
-    place = _place(content, rng)
-    return content[:place] + other[begin:end] + content[place:]
+def _moved(parts: Parts, rng: np.random.Generator, other: Parts) -> Parts:
+    """A part that takes the place of another one."""
+    begin, end = _span(parts, rng)
+    place = _place(parts, rng)
+    return parts[:place] + parts[begin:end] + parts[place + end - begin :]
 
 
-def _moved(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
-    """A part over another place of the same file."""
-    begin, end = _part(content, rng)
-    place = _place(content, rng)
-    return content[:place] + content[begin:end] + content[place + end - begin :]
+_PARTS: Mapping[str, Callable[..., Any]] = {"lost": _lost, "twice": _twice, "grafted": _grafted, "moved": _moved}
+"""What happens to a part of a file: to bytes, or to lines."""
 
 
-def _flooded(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
-    """A part all zeros, or all ones."""
-    begin, end = _part(content, rng)
-    return content[:begin] + (b"\x00", b"\xff")[int(rng.integers(2))] * (end - begin) + content[end:]
+def _of_lines(way: Callable[..., list[bytes]]) -> Way:
+    """The same of lines."""
+    return lambda content, rng, other: b"".join(way(content.splitlines(True), rng, other.splitlines(True)))
 
 
-def _sized(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
-    """A number of 2, 4 or 8 bytes that may be a size or an address."""
+def _put(choose: Callable[[np.random.Generator], bytes], over: bool = False) -> Way:
+    """Something put in at a place, or over what stands there."""
+
+    def put(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
+        place, new = _place(content, rng) if rng.random() < 0.9 else 0, choose(rng)
+        return content[:place] + new + content[place + over * len(new) :]
+
+    return put
+
+
+def _changed(change: Callable[[int, np.random.Generator], int]) -> Way:
+    """Some bytes changed."""
+
+    def changed(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
+        new = bytearray(content)
+        for place in rng.integers(len(new), size=int(rng.integers(1, 9))) if content else ():
+            new[place] = change(new[place], rng)
+        return bytes(new)
+
+    return changed
+
+
+def _rewritten(pattern: re.Pattern[bytes], choose: Callable[[list[bytes], bytes, np.random.Generator], bytes]) -> Way:
+    """One of the places that fit a pattern rewritten, by all that fit it and what stands there."""
+
+    def rewritten(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
+        found = list(pattern.finditer(content))
+        if not found:
+            return content
+        one = found[rng.integers(len(found))]
+        return content[: one.start()] + choose([each[0] for each in found], one[0], rng) + content[one.end() :]
+
+    return rewritten
+
+
+def _one_of(texts: Sequence[str]) -> Callable[[list[bytes], bytes, np.random.Generator], bytes]:
+    """One of some texts, whatever stands there."""
+    return lambda found, old, rng: texts[rng.integers(len(texts))].encode()
+
+
+def _scaled(found: list[bytes], old: bytes, rng: np.random.Generator) -> bytes:
+    """A number times a power of ten, or minus that."""
+    return repr(float(old) * 10.0 ** float(rng.integers(-9, 10)) * float(rng.choice((1.0, -1.0)))).encode()
+
+
+def _size(rng: np.random.Generator) -> bytes:
+    """A number such as takes the place of a size or address."""
     length = int(rng.choice((2, 4, 8)))
-    size = int(SIZES[rng.integers(len(SIZES))]) % (1 << (8 * length))
-    number = size.to_bytes(length, "little" if rng.random() < 0.7 else "big")
-    place = _place(content, rng)
-    return content[:place] + number + content[place + length :]
+    return (SIZES[rng.integers(len(SIZES))] % (1 << (8 * length))).to_bytes(
+        length, "little" if rng.random() < 0.7 else "big"
+    )
 
 
-def _rewritten(
-    content: bytes, pattern: re.Pattern[bytes], rng: np.random.Generator, new: Callable[[bytes], str]
-) -> bytes:
-    """Another text in one of the places that a pattern finds; nothing where there is none."""
-    places = list(pattern.finditer(content))
-    if not places:
-        return content
-    chosen = places[rng.integers(len(places))]
-    return content[: chosen.start()] + new(chosen[0]).encode() + content[chosen.end() :]
-
-
-def _swapped_numbers(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
-    """A number in the place of another."""
-    numbers = list(_NUMBER.finditer(content))
-    if len(numbers) < 2:
-        return content
-    first, second = (numbers[int(index)] for index in rng.integers(len(numbers), size=2))
-    return content[: first.start()] + content[second.start() : second.end()] + content[first.end() :]
-
-
-def _lines(content: bytes, rng: np.random.Generator) -> tuple[list[bytes], int]:
-    """Lines with their ends, and the number of one of them."""
-    lines = content.splitlines(keepends=True) or [b""]
-    return lines, int(rng.integers(len(lines)))
-
-
-def _line_lost(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
-    """A line is lost, a key with its value in most files."""
-    lines, number = _lines(content, rng)
-    return b"".join(lines[:number] + lines[number + 1 :])
-
-
-def _line_twice(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
-    """A line stands at another place, too."""
-    lines, number = _lines(content, rng)
-    lines.insert(int(rng.integers(len(lines) + 1)), lines[number])
-    return b"".join(lines)
-
-
-def _foreign_line(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
-    """A line of another file."""
-    lines, number = _lines(content, rng)
-    others, chosen = _lines(other, rng)
-    lines.insert(number, others[chosen])
-    return b"".join(lines)
-
-
-def _renamed(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
-    """A letter of a word at the beginning of a line is lost."""
-    lines, number = _lines(content, rng)
-    line = lines[number]
-    lines[number] = line[1:] if rng.random() < 0.5 else line[:1] + line
-    return b"".join(lines)
-
-
-def _strange(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
-    """Strange letters."""
-    place = _place(content, rng) if rng.random() < 0.8 else 0
-    return content[:place] + STRANGE[rng.integers(len(STRANGE))] * int(rng.integers(1, 4)) + content[place:]
-
-
-def _long_line(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
-    """A line without an end."""
-    place = _place(content, rng)
-    filler = (b"9", b" ", b"a", b"0.", b"1 ", b"\\", b'"', b"1,")[rng.integers(8)]
-    return content[:place] + filler * int(rng.integers(1, LONGEST_LINE // len(filler))) + content[place:]
-
-
-def _nested(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
-    """Brackets within brackets."""
-    place = _place(content, rng)
-    opening = (b"[", b"{a = ", b"a.", b"[[", b"(", b"{", b"[a.")[rng.integers(7)]
-    return content[:place] + opening * int(rng.integers(1, DEEPEST)) + content[place:]
-
-
+_FILLERS = (b"9", b" ", b"a", b"0.", b"1 ", b"\\", b'"', b"1,")
+_OPENINGS = (b"[", b"{a = ", b"a.", b"[[", b"(", b"{", b"[a.")
+_ENDS = (b"\r\n", b"\r", b"\n\n", b"")
 _ENCODINGS = ("utf-16", "utf-16-be", "utf-32", "utf-7")
 
 _ALL: Mapping[str, Way] = {
-    "bits flipped": lambda content, rng, other: _changed(content, rng, lambda old: old ^ 1 << int(rng.integers(8))),
-    "bytes set": lambda content, rng, other: _changed(content, rng, lambda old: int(rng.integers(256))),
-    "cut off": lambda content, rng, other: content[: _place(content, rng)],
-    "beginning lost": lambda content, rng, other: content[_place(content, rng) :],
-    "part lost": _cut_out,
-    "part twice": _twice,
-    "spliced": lambda content, rng, other: content[: _place(content, rng)] + other[_place(other, rng) :],
-    "grafted": _grafted,
-    "moved": _moved,
+    "bits flipped": _changed(lambda old, rng: old ^ 1 << int(rng.integers(8))),
+    "bytes set": _changed(lambda old, rng: int(rng.integers(256))),
+    **{f"part {name}": way for name, way in _PARTS.items()},
     "emptied": lambda content, rng, other: content[: int(rng.integers(3))],
 }
 
 TEXT_WAYS: Mapping[str, Way] = {
     **_ALL,
-    "another number": lambda content, rng, other: _rewritten(
-        content, _NUMBER, rng, lambda old: NUMBERS[rng.integers(len(NUMBERS))]
-    ),
-    # off by powers of ten, or of the other sign
-    "scaled number": lambda content, rng, other: _rewritten(
-        content,
-        _NUMBER,
-        rng,
-        lambda old: repr(float(old) * 10.0 ** float(rng.integers(-9, 10)) * float(rng.choice((1.0, -1.0)))),
-    ),
-    "swapped numbers": _swapped_numbers,
-    "another unit": lambda content, rng, other: _rewritten(
-        content, _UNIT, rng, lambda old: UNITS[rng.integers(len(UNITS))]
-    ),
-    "line lost": _line_lost,
-    "line twice": _line_twice,
-    "foreign line": _foreign_line,
-    "renamed": _renamed,
-    "strange letters": _strange,
-    "long line": _long_line,
-    "nested": _nested,
-    "line ends": lambda content, rng, other: content.replace(b"\n", (b"\r\n", b"\r", b"\n\n", b"")[rng.integers(4)]),
+    **{f"line {name}": _of_lines(way) for name, way in _PARTS.items()},
+    "another number": _rewritten(_NUMBER, _one_of(NUMBERS)),
+    "scaled number": _rewritten(_NUMBER, _scaled),
+    "swapped numbers": _rewritten(_NUMBER, lambda found, old, rng: found[rng.integers(len(found))]),
+    "another unit": _rewritten(_UNIT, _one_of(UNITS)),
+    "renamed": _rewritten(_BEGIN, lambda found, old, rng: b"" if rng.random() < 0.5 else 2 * old),
+    "strange letters": _put(lambda rng: STRANGE[rng.integers(len(STRANGE))] * int(rng.integers(1, 4))),
+    "long line": _put(lambda rng: _FILLERS[rng.integers(8)] * int(rng.integers(1, LONGEST_LINE // 2))),
+    "nested": _put(lambda rng: _OPENINGS[rng.integers(7)] * int(rng.integers(1, DEEPEST))),
+    "line ends": lambda content, rng, other: content.replace(b"\n", _ENDS[rng.integers(4)]),
     "wide letters": lambda content, rng, other: content.decode("utf-8", "replace").encode(_ENCODINGS[rng.integers(4)]),
 }
-
-BINARY_WAYS: Mapping[str, Way] = {**_ALL, "flooded": _flooded, "size": _sized}
+BINARY_WAYS: Mapping[str, Way] = {
+    **_ALL,
+    "flooded": _put(lambda rng: (b"\x00", b"\xff")[rng.integers(2)] * int(rng.integers(1, 401)), over=True),
+    "size": _put(_size, over=True),
+}
