@@ -27,6 +27,34 @@ class InputError(EhdmapsError):
         super().__init__("\n".join(self.problems))
 
 
+class Problems(list[str]):
+    """Problems of input that are noted one after another, and raised together; as a context, those of what fails in it.
+
+    Examples
+    --------
+    >>> problems = Problems()
+    >>> with problems:
+    ...     raise InputError("speed: got -1 rpm; allowed: 0 rpm and more")
+    >>> problems.check()
+    Traceback (most recent call last):
+    ...
+    ehdmaps.errors.InputError: speed: got -1 rpm; allowed: 0 rpm and more
+    """
+
+    def __enter__(self) -> Problems:
+        return self
+
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> bool:
+        if isinstance(error, InputError):
+            self += error.problems
+        return isinstance(error, InputError)
+
+    def check(self) -> None:
+        """Raise an `InputError` with all of them, each once, where there are any."""
+        if self:
+            raise InputError(tuple(dict.fromkeys(self)))
+
+
 class DependencyError(InputError):
     """A package that an extra of the distribution installs is not there; the message names the extra."""
 

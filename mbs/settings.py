@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from mbs.model.profiles import SpeedProfile
 
 MOST_SPEEDS = 2000
@@ -69,7 +69,7 @@ class Settings:
     residual: float = 1e-10
 
     def __post_init__(self) -> None:
-        problems = []
+        problems = Problems()
         if not (math.isfinite(self.step) and self.step > 0.0):
             problems.append(f"integration, step: got {self.step!r} s; allowed: finite and > 0")
         elif not (math.isfinite(self.sample) and _whole(self.sample / self.step)):
@@ -82,8 +82,7 @@ class Settings:
             problems.append(f"integration, tolerance: got {self.tolerance!r}; allowed: > 0 (m or rad)")
         if not 0.0 < self.residual < 1.0:
             problems.append(f"integration, residual: got {self.residual!r}; allowed: between 0 and 1")
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     @property
     def steps_per_sample(self) -> int:
@@ -132,7 +131,7 @@ class SweepRange:
     points: int
 
     def __post_init__(self) -> None:
-        problems = []
+        problems = Problems()
         if not 2 <= self.points <= MOST_SPEEDS:
             problems.append(f"points: got {self.points}; allowed: a whole number from 2 to {MOST_SPEEDS}")
         if not 0.0 <= self.begin < self.end < np.inf:
@@ -140,8 +139,7 @@ class SweepRange:
                 f"from, to: got {self.begin:.6g} to {self.end:.6g} rad/s; allowed: rising, from 0 rpm on; exchange "
                 "them, or set them apart"
             )
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     @property
     def speeds(self) -> FloatArray:
@@ -176,15 +174,14 @@ class CampbellSettings:
     orders: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
-        problems = []
+        problems = Problems()
         if not (math.isfinite(self.highest) and self.highest > 0.0):
             problems.append(f"campbell, highest: got {self.highest!r} Hz; allowed: finite and > 0")
         if self.window is not None and not (math.isfinite(self.window) and self.window > 0.0):
             problems.append(f"campbell, window: got {self.window!r} s; allowed: finite and > 0")
         if not all(math.isfinite(order) and order > 0.0 for order in self.orders):
             problems.append(f"campbell, orders: got {list(self.orders)!r:.80}; allowed: finite numbers > 0")
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
 
 def _whole(ratio: float) -> bool:

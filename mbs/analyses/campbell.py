@@ -16,7 +16,7 @@ import xarray as xr
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.compiling import cpu_seconds
-from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.errors import AnalysisError, InputError, Problems
 from ehdmaps.figures import typeset
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.law_errors import LawChange
@@ -397,14 +397,12 @@ def campbell(
 
 def campbell_problems(scene: Scene, settings: CampbellSettings, sensors: Sequence[str] = ()) -> list[str]:
     """Everything about the run and the sensors of a scene that is not possible with some settings."""
-    problems: list[str] = []
+    problems = Problems()
     chosen_sensors(scene, settings, sensors, problems)
     course = run_course(scene, settings.highest, problems)
     if course is not None and not problems:
-        try:
+        with problems:
             silent_run(course).ramp()
-        except InputError as error:
-            problems += error.problems
     return problems
 
 

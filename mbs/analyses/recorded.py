@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from mbs.analyses.campbell import LawRun
 from mbs.analyses.sensors import ALL_SENSORS, excited_orders, orders_in_band
 from mbs.model.elements import Sensor
@@ -216,13 +216,12 @@ def channels_of(record: TimeRecord, names: Sequence[str]) -> tuple[TimeChannel, 
                 return (channel,)
         raise InputError(f"{record.label}: has no channel of an acceleration; allowed: --sensor with one of {there}")
     found = [chosen(record, name, "--sensor") for name in names]
-    problems = [
+    problems = Problems(
         f"--sensor: {channel.name!r:.60} is in {channel.unit}, of which there is no level; allowed: one of {there}"
         for channel in found
         if channel.reference is None
-    ]
-    if problems:
-        raise InputError(problems)
+    )
+    problems.check()
     return tuple(dict.fromkeys(found))
 
 

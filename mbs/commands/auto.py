@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ehdmaps.choices import texts_of
-from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.errors import AnalysisError, InputError, Problems
 from mbs.commands.common import Done, Looked
 from mbs.model.relaxation import DEFAULT_FILMS
 from mbs.scene.choices import CHOICES
@@ -49,14 +49,11 @@ def analysed(
         With every problem of the arguments.
     """
     auto = bool(getattr(arguments, "auto", False))
-    problems = _problems(arguments, auto)
+    problems = Problems(_problems(arguments, auto))
     tolerance = read_tolerance(arguments, problems) if auto else None
-    try:
+    with problems:
         asked = ask(arguments)
-    except InputError as error:
-        problems += error.problems
-    if problems:
-        raise InputError(tuple(dict.fromkeys(problems)))
+    problems.check()
     if not auto:
         found = judged(arguments, looks_at(asked)) if hasattr(arguments, "auto") else ()
         return Done(analyse(asked), tuple(f"note: {one.line}" for one in found if one.matters and not one.on))

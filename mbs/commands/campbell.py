@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.units import RPM
 from ehdmaps.workers import available_cores
 from mbs.analyses.campbell import MOST_BANDS, MOST_DAMPED, CampbellResult, LawRun, campbell, campbell_problems, fading
@@ -126,7 +126,7 @@ def _looks_at(asked: _Asked) -> Looked:
 
 def _asked(arguments: argparse.Namespace) -> _Asked:
     """Laws, what is looked at, runs of a band, and the tolerance if there is one; all problems at once."""
-    problems: list[str] = []
+    problems = Problems()
     text = arguments.bands or "0"
     bands = int(text) if text.isascii() and text.isdigit() and len(text) < 4 else -1
     if not 0 <= bands <= MOST_BANDS:
@@ -158,8 +158,7 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
             problems.append(f"--measured: got {len(cases)} laws beside it; allowed: up to {MOST_LAWS - 1}")
         else:
             measured = measured_run(looked, cases[0].model, settings)
-    if problems:
-        raise InputError(tuple(dict.fromkeys(problems)))
+    problems.check()
     return _Asked(cases, settings, looked.sensors, bands, tolerance, measured)
 
 

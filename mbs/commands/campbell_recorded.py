@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.units import RPM, short
 from mbs.analyses.campbell import CampbellResult, waterfall_of
@@ -283,16 +283,15 @@ def recorded_data(arguments: argparse.Namespace, of_a_scene: tuple[str, ...]) ->
     InputError
         With every problem.
     """
-    problems = [
+    problems = Problems(
         f"--{name.replace('_', '-')}: stands beside {short(arguments.scene)}, a run that is recorded; allowed: with a "
         "scene, which is simulated"
         for name in of_a_scene
         if getattr(arguments, name, None)
-    ]
+    )
     look = read_look(arguments, problems)
     problems += signal_problems(arguments, [arguments.scene, *look.files], 1)
-    if problems:
-        raise InputError(tuple(dict.fromkeys(problems)))
+    problems.check()
     data = read_time_data(arguments.scene)
     problems += signal_outputs("--signals", arguments.signals, len(data.records))[1]
     if arguments.plot:
@@ -300,8 +299,7 @@ def recorded_data(arguments: argparse.Namespace, of_a_scene: tuple[str, ...]) ->
 
         if len(data.records) > MOST_LAWS:
             problems.append(f"--plot: got {len(data.records)} runs in {arguments.scene}; allowed: up to {MOST_LAWS}")
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return data, look
 
 

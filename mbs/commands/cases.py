@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from ehdmaps.choices import texts_of
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.outputs import FIGURE, Kind, Output, output_problems
 from mbs.analyses.case import Case, common_clearance
 from mbs.output.files import RESULT
@@ -86,7 +86,7 @@ def load_cases(
     InputError
         With every problem.
     """
-    problems: list[str] = []
+    problems = Problems()
     scene = _read_scene(arguments, problems)
     if not several:
         problems += _one_each(arguments)
@@ -113,8 +113,7 @@ def load_cases(
         words = [*([subject.law.label] if len(laws) > 1 or not one.words else []), *one.words]
         factor, angle = one.values.get("load-factor", 1.0), one.values.get("start-angle")
         cases.append(Case(", ".join(words), model, common_clearance(model), factor, angle, subject))
-    if problems:
-        raise InputError(tuple(dict.fromkeys(problems)))
+    problems.check()
     return cases
 
 

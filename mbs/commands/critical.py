@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import Problems
 from ehdmaps.units import MOTIONS, RPM, written
 from mbs.analyses.case import Case
 from mbs.analyses.operating import operating
@@ -81,25 +81,20 @@ class _Asked(NamedTuple):
 
 def _asked(arguments: argparse.Namespace) -> _Asked:
     """A case for each law, map, kind of films, oil supply and clearance, and the speeds; all problems at once."""
-    problems: list[str] = []
+    problems = Problems()
     settings, cases = SweepSettings(), list[Case]()
-    try:
+    with problems:
         settings = SweepSettings(read_speeds(arguments.speed) if arguments.speed else None)
-    except InputError as error:
-        problems += error.problems
     with_bands(arguments, problems)
     settings = dataclasses.replace(settings, cage_angles=read_cage_angles(arguments, problems))
-    try:
+    with problems:
         cases = load_cases(arguments)
-    except InputError as error:
-        problems += error.problems
     if len(cases) > MOST_COMPARED_CASES:
         problems.append(
             f"--law, --map, --films, --supply, --clearance: got {len(cases)} cases; allowed: up to "
             f"{MOST_COMPARED_CASES} side by side"
         )
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return _Asked(cases, settings)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.extras import lacking
 from ehdmaps.outputs import Output, check_outputs, output_problems
 from ehdmaps.units import quantity
@@ -112,7 +112,7 @@ def _report(found: HammerResult, label: str, nonlinear: bool) -> tuple[list[str]
 
 def _options(arguments: argparse.Namespace) -> tuple[float | None, float | None]:
     """Read highest frequency and duration; -o has to be there."""
-    problems = []
+    problems = Problems()
     found: list[float | None] = []
     for option, text, unit in (("--highest", arguments.highest, "Hz"), ("--duration", arguments.duration, "s")):
         found.append(None)
@@ -129,8 +129,7 @@ def _options(arguments: argparse.Namespace) -> tuple[float | None, float | None]
     if not arguments.output:
         problems.append("-o: missing; give the universal file that the records are written to, such as hits.uff")
     problems += [*output_problems([Output("-o", arguments.output, UFF)]), *lacking("modal", "pyuff", "-o")]
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return found[0], found[1]
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.exports.mat import KIND
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.units import written
@@ -43,11 +43,10 @@ MOST_COMPARED_CASES = 8
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Linearise, and compute the responses over the frequencies of the scene, with each law."""
-    problems: list[str] = []
+    problems = Problems()
     settings = LsaSettings(cage_angles=read_cage_angles(arguments, problems))
     banded = with_bands(arguments, problems)
-    if problems:
-        raise InputError(problems)
+    problems.check()
     done = analysed(
         arguments,
         _asked,
@@ -75,12 +74,10 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 def _asked(arguments: argparse.Namespace) -> list[Case]:
     """A case for each law, map, kind of films, oil supply and clearance."""
     file = getattr(arguments, "state_space", None)
-    problems: list[str] = []
+    problems = Problems()
     cases: list[Case] = []
-    try:
+    with problems:
         cases = load_cases(arguments, needs=lsa_problems)
-    except InputError as error:
-        problems += error.problems
     if file is not None:
         read = [
             arguments.scene,
@@ -89,8 +86,7 @@ def _asked(arguments: argparse.Namespace) -> list[Case]:
         ]
         outputs = [Output("-o", arguments.output, RESULT), Output("--plot", arguments.plot, FIGURE)]
         problems += output_problems([*outputs, Output("--state-space", file, KIND)], read)
-    if problems:
-        raise InputError(tuple(dict.fromkeys(problems)))
+    problems.check()
     if len(cases) > MOST_COMPARED_CASES:
         raise InputError(
             f"--law, --map, --films, --supply, --clearance: got {len(cases)} cases; allowed: up to "

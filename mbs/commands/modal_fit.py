@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.outputs import FIGURE, Output, output_problems, write_figure
 from ehdmaps.units import quantity
 from mbs.commands.common import RESOLUTION
@@ -83,7 +83,7 @@ def _options(
     arguments: argparse.Namespace,
 ) -> tuple[tuple[float, float] | None, float | None, float | None]:
     """Read band and windows, and check the outputs; a decay of None is found from the records."""
-    problems = []
+    problems = Problems()
     ends = []
     for text in arguments.band or ():
         try:
@@ -120,8 +120,7 @@ def _options(
         ("--responses", arguments.responses, UFF),
     )
     problems += output_problems([Output(*file) for file in files], [arguments.file])
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return (ends[0], ends[1]) if ends else None, decay, windowed
 
 

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.commands.check import cost_of
 from ehdmaps.jobs.cost import total
@@ -109,14 +109,13 @@ def _plan(found: PlanResult, arguments: argparse.Namespace) -> list[_Planned]:
     """The job of each geometry with its path; all problems at once."""
     paths = [_path(arguments.output, entry, alone=len(found.needed) == 1) for entry in found.needed]
     # One name was looked at by `_read`; several only now that they are known.
-    problems = output_problems([Output("-o", path, SEALED) for path in paths], [arguments.scene, *found.scene.files])
+    problems = Problems(
+        output_problems([Output("-o", path, SEALED) for path in paths], [arguments.scene, *found.scene.files])
+    )
     jobs: tuple[Job, ...] = ()
-    try:
+    with problems:
         jobs = found.jobs([path.stem if path else "plan" for path in paths])
-    except InputError as error:
-        problems += error.problems
-    if problems:
-        raise InputError(tuple(dict.fromkeys(problems)))
+    problems.check()
     return [_Planned(*entry) for entry in zip(found.needed, jobs, paths, strict=True)]
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.outputs import Output, output_problems
 from ehdmaps.units import LENGTH
 from ehdmaps.version import version
@@ -26,12 +26,10 @@ _SHOWN = 30
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Read BODY.toml, reduce, write."""
     source, target = Path(arguments.body), Path(arguments.output or Path(arguments.body).with_suffix(".nc"))
-    problems: list[str] = []
+    problems = Problems()
     plan = None
-    try:
+    with problems:
         plan = read_body_file(source)
-    except InputError as error:
-        problems += error.problems
     problems += output_problems([Output("-o", target, REDUCED)], [source, *(plan.files if plan else ())])
     if problems or plan is None:
         raise InputError(problems)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import xarray as xr
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import Problems
 from ehdmaps.report.page import REPORT, write_report
 from mbs.analyses.case import Case
 from mbs.analyses.reach import outside_at
@@ -59,26 +59,19 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
 def _asked(arguments: argparse.Namespace) -> _Asked:
     """Read what is asked for; all problems at once."""
-    problems: list[str] = []
+    problems = Problems()
     speeds, saved, cases = None, None, []
     with_bands(arguments, problems)
-    try:
+    with problems:
         speeds = read_speeds(arguments.speed) if arguments.speed else None
-    except InputError as error:
-        problems += error.problems
     if arguments.result is not None:
-        try:
+        with problems:
             saved = read_result(arguments.result)
-        except InputError as error:
-            problems += error.problems
         if arguments.speed:
             problems.append("--speed: stands beside --result, whose speeds are drawn; leave one of them out")
-    try:
+    with problems:
         cases = load_cases(arguments, several=False, kind=REPORT)
-    except InputError as error:
-        problems += error.problems
-    if problems:
-        raise InputError(tuple(dict.fromkeys(problems)))
+    problems.check()
     return _Asked(cases[0], speeds, saved)
 
 

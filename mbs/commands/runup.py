@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.figures import COLOURS
 from ehdmaps.units import RPM, closest
 from ehdmaps.workers import available_cores
@@ -119,7 +119,7 @@ def _ran(asked: _Asked, workers: int, *, states: bool) -> tuple[RunUps, _Asked, 
 
 def _asked(arguments: argparse.Namespace) -> _Asked:
     """Laws, spectra and tolerance; all problems at once, before anything runs."""
-    problems: list[str] = []
+    problems = Problems()
     tolerance = asked_tolerance(arguments, problems)
     wanted = _read_spectra(arguments, problems)
     problems += [
@@ -159,8 +159,7 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
             amplitudes_at(record, wanted.speeds, wanted.window, wanted.highest or scene.campbell.highest)
         except InputError as error:
             problems += [f"--spectrum-at: {line}" for line in error.problems]
-    if problems:
-        raise InputError(tuple(dict.fromkeys(problems)))
+    problems.check()
     return _Asked(cases, wanted, tolerance)
 
 

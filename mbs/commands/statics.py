@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.units import DAMPER, FILM, PRESSURE, SPRING, written
 from mbs.analyses.reach import fade_lines, outside_at
 from mbs.analyses.soundness import Judged
@@ -105,10 +105,9 @@ def _slow(model: Model, balance: Equilibrium) -> list[str]:
 
 def _asked(arguments: argparse.Namespace) -> Model:
     """The model, whose rollers are drawn if asked for."""
-    problems: list[str] = []
+    problems = Problems()
     with_bands(arguments, problems)
-    if problems:
-        raise InputError(problems)
+    problems.check()
     model = load_model(arguments)
     if arguments.plot and not model.on_rings:
         raise InputError(f"--plot: {model.scene.name} has no bearing of rollers or balls to draw; leave it out")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.units import DAMPER, RPM, SPRING, quantity
 from ehdmaps.workers import available_cores
 from mbs.analyses.case import Case
@@ -112,21 +112,16 @@ def _looks_at(asked: _Asked) -> Looked:
 
 def _read(arguments: argparse.Namespace) -> tuple[SweepSettings, list[Case]]:
     """Read speeds, number of cage angles, and cases; all problems at once."""
-    problems: list[str] = []
+    problems = Problems()
     speeds: SweepRange | None = None
     cases: list[Case] = []
-    try:
+    with problems:
         speeds = read_speeds(arguments.speed) if arguments.speed else None
-    except InputError as error:
-        problems += error.problems
     angles = read_cage_angles(arguments, problems)
     with_bands(arguments, problems)
-    try:
+    with problems:
         cases = load_cases(arguments, needs=lambda scene: _needs(arguments, scene), speeds=speeds)
-    except InputError as error:
-        problems += error.problems
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return SweepSettings(speeds, angles), cases
 
 
@@ -151,7 +146,7 @@ def read_speeds(texts: Sequence[str]) -> SweepRange:
     InputError
         With every problem.
     """
-    problems = []
+    problems = Problems()
     ends = []
     for text in texts[:2]:
         try:
@@ -163,8 +158,7 @@ def read_speeds(texts: Sequence[str]) -> SweepRange:
         problems.append(f"--speed: got {texts[2]!r:.40} points; allowed: a whole number from 2 to {MOST_SPEEDS}")
     if len(ends) == 2 and not 0.0 <= ends[0] < ends[1] <= 1e5:
         problems.append(f"--speed: got from {texts[0]!r:.40} to {texts[1]!r:.40}; allowed: rising, from 0 rpm on")
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return SweepRange(ends[0], ends[1], points)
 
 

@@ -21,7 +21,7 @@ import numpy as np
 from scipy import sparse
 
 from ehdmaps.arrays import FloatArray, IntArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import Problems
 from mbs.flexible.plan import UNIT_SYSTEMS
 from mbs.model.body import lever_arm
 
@@ -78,7 +78,7 @@ class FiniteElementModel:
     def __post_init__(self) -> None:
         for name, dtype in (("nodes", np.int64), ("directions", np.int64), ("numbers", np.int64), ("positions", float)):
             object.__setattr__(self, name, np.asarray(getattr(self, name), dtype=dtype))
-        problems = self._shape_problems()
+        problems = Problems(self._shape_problems())
         if not problems:
             for name in ("stiffness", "mass"):
                 matrix = sparse.csc_array(getattr(self, name), dtype=np.float64)
@@ -98,8 +98,7 @@ class FiniteElementModel:
                 massless,
                 f"no mass or a negative one; allowed: a mass for each; {self._cause(massless, 'mass')}",
             )
-        if problems:
-            raise InputError(problems)
+        problems.check()
         object.__setattr__(self, "_place", {int(number): k for k, number in enumerate(self.numbers)})
         labels = zip(self.nodes.tolist(), self.directions.tolist(), strict=True)
         object.__setattr__(self, "_row", {label: k for k, label in enumerate(labels)})

@@ -29,7 +29,7 @@ import numpy as np
 from scipy import sparse
 
 from ehdmaps.arrays import FloatArray, IntArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.units import short
 from mbs.flexible.apart import run_apart
 from mbs.flexible.finite_elements import ASYMMETRY, MOST_FREEDOMS, FiniteElementModel, NodePositions, named
@@ -263,7 +263,7 @@ def _entries(mesh: Path, *matrices: tuple[Path, str]) -> Mapping[str, Any]:
             "reads; was it cut off?"
         ) from error
     lost = np.setxor1d(grids, parts["numbers"])
-    problems = (
+    problems = Problems(
         [f"{mesh}: pyNastran does not find GRID {named(lost)}; allowed: entries that it reads"] if lost.size else []
     )
     for which, (path, name) in zip("km", matrices, strict=False):
@@ -273,8 +273,7 @@ def _entries(mesh: Path, *matrices: tuple[Path, str]) -> Mapping[str, Any]:
                 f"{path}, DMIG {name}: pyNastran finds {found} values where the file has {there}; allowed: rows of a "
                 "head and lines that go on, such as Nastran writes them"
             )
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return parts
 
 

@@ -14,7 +14,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.inputs import check_input
 from mbs.flexible.number_table import check_file
 from mbs.frozen import frozen
@@ -46,13 +46,12 @@ class Turn:
     angle: float
 
     def __post_init__(self) -> None:
-        problems = []
+        problems = Problems()
         if self.about not in AXES:
             problems.append(f"rotation, about: got {self.about!r:.40}; allowed: {', '.join(AXES)}")
         if not math.isfinite(self.angle):
             problems.append(f"rotation, angle: got {self.angle!r} rad; allowed: finite")
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     @property
     def matrix(self) -> FloatArray:
@@ -123,13 +122,12 @@ def attach(body: Body, parts: Sequence[Attached]) -> Body:
     InputError
         For frames that the body does not have.
     """
-    problems = [
+    problems = Problems(
         f"body {body.name!r}, attached: got the frame {part.frame!r}; allowed: {', '.join(body.frames)}"
         for part in parts
         if part.frame not in body.frames
-    ]
-    if problems:
-        raise InputError(problems)
+    )
+    problems.check()
     mass, gyroscopic = body.mass.copy(), body.gyroscopic.copy()
     for part in parts:
         m, polar, transverse = part.inertia.mass, part.inertia.polar, part.inertia.transverse
@@ -291,12 +289,10 @@ class ReductionPlan:
 
     def file_problems(self) -> list[str]:
         """Say which of the files are not there, or too long; they are not read."""
-        problems: list[str] = []
+        problems = Problems()
         for path in self.files:
-            try:
+            with problems:
                 check_file(path)
-            except InputError as error:
-                problems += error.problems
         return problems
 
 

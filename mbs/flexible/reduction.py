@@ -26,7 +26,7 @@ import numpy as np
 from scipy import sparse
 
 from ehdmaps.arrays import FloatArray, IntArray
-from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.errors import AnalysisError, InputError, Problems
 from mbs.flexible.finite_elements import FiniteElementModel, named
 from mbs.flexible.held_body import HeldBody
 from mbs.flexible.plan import KINDS, Kind
@@ -73,7 +73,7 @@ class Interface:
         object.__setattr__(self, "position", np.asarray(self.position, dtype=np.float64))
         object.__setattr__(self, "nodes", np.asarray(self.nodes, dtype=np.int64))
         object.__setattr__(self, "freedoms", tuple(self.freedoms))
-        problems = []
+        problems = Problems()
         if self.position.shape != (3,) or not np.all(np.isfinite(self.position)):
             problems.append(f"interface, position: got {self.position!r:.80}; allowed: three finite lengths in m")
         if self.nodes.ndim != 1 or self.nodes.size == 0:
@@ -95,8 +95,7 @@ class Interface:
                     f"interface, weights: got shape {weights.shape}; allowed: a finite number > 0 for each of "
                     f"{self.nodes.size} nodes"
                 )
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
 
 @dataclass(frozen=True, eq=False)
@@ -532,7 +531,7 @@ def _checked(
     model: FiniteElementModel, interfaces: Mapping[str, Interface], points: Mapping[str, Point], cutoff: float
 ) -> tuple[dict[str, Spider], dict[str, _Observer]]:
     """Find the degrees of freedom of interfaces and points; raise with all that does not fit."""
-    problems = []
+    problems = Problems()
     if not 0.0 < cutoff <= HIGHEST_CUTOFF:
         problems.append(f"cutoff: got {cutoff!r} Hz; allowed: above 0, up to {HIGHEST_CUTOFF:.0e} Hz")
     if not interfaces:
@@ -545,16 +544,12 @@ def _checked(
     spiders: dict[str, Spider] = {}
     observers: dict[str, _Observer] = {}
     for name, entry in interfaces.items():
-        try:
+        with problems:
             spiders[name] = spider(model, name, entry)
             observers[name] = _Observer(entry.position, spiders[name].rows, spiders[name].mean)
-        except InputError as error:
-            problems += error.problems
     for name, point in points.items():
-        try:
+        with problems:
             observers[name] = _observer(model, name, point)
-        except InputError as error:
-            problems += error.problems
     owner: dict[int, str] = {}
     for name, entry in sorted(interfaces.items(), key=lambda item: item[1].kind != "rigid"):
         taken = [node for node in entry.nodes.tolist() if node in owner]
@@ -565,8 +560,7 @@ def _checked(
             )
         elif entry.kind == "rigid":
             owner |= dict.fromkeys(entry.nodes.tolist(), name)
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return spiders, observers
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from scipy import sparse
 
 from ehdmaps.arrays import FloatArray, IntArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import Problems
 from mbs.flexible.finite_elements import FiniteElementModel, named
 
 TOLERANCE = 0.01
@@ -143,7 +143,7 @@ def check_rigid_motion(model: FiniteElementModel) -> None:
     """
     found = strained(model)
     free = found.nodes - found.held.size
-    problems = []
+    problems = Problems()
     if found.displaced.size > MOST_DISPLACED * free:
         problems.append(
             f"finite-element body: a turn of the whole body strains {found.displaced.size} of {free} nodes that a "
@@ -157,5 +157,4 @@ def check_rigid_motion(model: FiniteElementModel) -> None:
             f"{named(found.held)}; allowed: a stiffness that is whole, of a body that is free or held at a part of its "
             "nodes; were values lost?"
         )
-    if problems:
-        raise InputError(problems)
+    problems.check()

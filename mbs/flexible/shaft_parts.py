@@ -9,7 +9,7 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.physics.solids import STEEL
 from mbs.flexible.beam import CrossSection, element_length, wave_length
 from mbs.flexible.taper import Along
@@ -64,7 +64,7 @@ class Section:
     end_bore: float | None = None
 
     def __post_init__(self) -> None:
-        problems = [
+        problems = Problems(
             f"section, {name}: got {value!r} {unit}; allowed: {low:g} to {high:g} {unit}"
             for name, value, unit, low, high in (
                 ("begin", self.begin, "m", -FARTHEST, FARTHEST),
@@ -75,7 +75,7 @@ class Section:
                 ("density", self.density, "kg/m3", 1e-6, 1e6),
             )
             if not low <= value <= high
-        ]
+        )
         if self.end - self.begin <= TOGETHER:
             problems.append(
                 f"section, end: got {self.end!r} m, begin {self.begin!r} m; allowed: end > begin, by more than "
@@ -91,8 +91,7 @@ class Section:
         ]
         if not -1.0 < self.poisson_ratio < 0.5:
             problems.append(f"section, poisson_ratio: got {self.poisson_ratio!r}; allowed: -1 < nu < 0.5")
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     @property
     def last_diameter(self) -> float:
@@ -299,7 +298,7 @@ def shaft_problems(
     damping_ratio : float
         Damping ratio of the modes.
     """
-    problems = misfits(sections, discs, freedoms, frames)
+    problems = Problems(misfits(sections, discs, freedoms, frames))
     if not (len(position) == 3 and all(math.isfinite(value) for value in position)):
         problems.append(f"position: got {tuple(position)!r} m; allowed: three finite numbers")
     if not math.isfinite(spin):
@@ -311,10 +310,8 @@ def shaft_problems(
     if not (math.isfinite(damping_ratio) and 0.0 <= damping_ratio < 1.0):
         problems.append(f"damping_ratio: got {damping_ratio!r}; allowed: 0 <= ratio < 1")
     if not problems:
-        try:
+        with problems:
             divide(sections, [*(disc.position for disc in discs), *frames.values()], largest_element, cutoff)
-        except InputError as error:
-            problems += error.problems
     return problems
 
 

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import Problems
 from mbs.gears.gear_kernel import BY_RATE, FORCE, SLOPE, MeshData, mesh_energy, mesh_force, mesh_powers
 from mbs.gears.pair import PLACED, GearPair
 from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, Port, Powers
@@ -169,7 +169,7 @@ def gear_mesh(
     apart, wanted = math.hypot(distance[1], distance[2]), pair.centre_distance
     where = f"gear pair {pair.name!r}"
     rule = _DISTANCE[2 if pair.profile_shift else bool(pair.helix_angle)]
-    problems = []
+    problems = Problems()
     if not abs(distance[0]) <= PLACED:
         problems.append(
             f"{where}: the middles of the gears are {distance[0] * 1e3:.6g} mm apart along x; allowed: one plane"
@@ -185,8 +185,7 @@ def gear_mesh(
         problems.append(
             f"{where}: the spins are {spin1!r} and {spin2!r}; allowed: {needed:.15g} for the second gear, by the teeth"
         )
-    if problems:
-        raise InputError(problems)
+    problems.check()
     towards = np.array([0.0, distance[1], distance[2]]) / apart
     along = np.array([0.0, -towards[2], towards[1]])
     angle, lean = pair.working_pressure_angle, math.tan(pair.base_helix_angle)

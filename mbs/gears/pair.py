@@ -25,7 +25,7 @@ from functools import cached_property
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 
 FEWEST_TEETH, MOST_TEETH = 5, 10_000
 MOST_HARMONICS = 50
@@ -304,7 +304,7 @@ class GearPair:
     tip_diameters: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
-        problems = self._number_problems()
+        problems = Problems(self._number_problems())
         series = [
             ("transmission_error", self.transmission_error, "m"),
             ("harmonic_phases", self.harmonic_phases, "rad"),
@@ -330,8 +330,7 @@ class GearPair:
             problems += self._shift_problems()
         if not problems:
             problems += self._stiffness_problems()
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     @property
     def transverse_module(self) -> float:

@@ -10,7 +10,7 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from mbs.flexible.beam import CrossSection, wave_length
 from mbs.imports.ross_file import TERMS, RossBearing, RossDisc, RossRotor
 
@@ -105,7 +105,7 @@ def _places(rotor: RossRotor) -> list[float]:
 
 def _supports(rotor: RossRotor, places: Sequence[float]) -> dict[int, float]:
     """Places of nodes beyond the shaft, by the bearings that lead to them [m]; every node that is named is there."""
-    problems: list[str] = []
+    problems = Problems()
     found: dict[int, float] = {}
     beyond = {mass.node for mass in rotor.masses if mass.node >= len(places)}
     waiting = [bearing for bearing in rotor.bearings if bearing.link is not None and bearing.link >= len(places)]
@@ -129,8 +129,7 @@ def _supports(rotor: RossRotor, places: Sequence[float]) -> dict[int, float]:
                 f"{entry.tag!r:.60}: got node {node}; allowed: 0 to {len(places) - 1} on the shaft, or that of a "
                 "PointMass to which a bearing with n_link leads"
             )
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return found
 
 

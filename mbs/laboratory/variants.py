@@ -17,7 +17,7 @@ import numpy as np
 import xarray as xr
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.errors import AnalysisError, InputError, Problems
 from mbs.analyses.case import Failed, Progress, side_by_side, silent
 from mbs.analyses.operating import held
 from mbs.analyses.ramp import recorded_run, run_course, silent_run
@@ -231,7 +231,7 @@ def _planned(
     sensors: tuple[Sensor, ...],
 ) -> tuple[list[_Run], list[tuple[int, int]]]:
     """All different runs, and which two of them each comparison is of; all problems at once."""
-    problems: list[str] = []
+    problems = Problems()
     if not sensors:
         names = ", ".join(sensor.name for sensor in scene.sensors)
         problems.append(
@@ -239,8 +239,7 @@ def _planned(
         )
     if len(variations) > MOST_VARIANTS:
         problems.append(f"--vary: got {len(variations)} values; allowed: at most {MOST_VARIANTS}")
-    if problems:
-        raise InputError(problems)
+    problems.check()
     bases = tuple(Subject(scene, law, clearance) for law in laws)
     runs: list[_Run] = []
     places: dict[str, int] = {}
@@ -261,8 +260,7 @@ def _planned(
         if problems and not change:
             # What is wrong about the base is wrong about each change of it.
             break
-    if problems:
-        raise InputError(tuple(dict.fromkeys(problems)))
+    problems.check()
     return runs, pairs
 
 

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
-from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.errors import AnalysisError, Problems
 from mbs.linearised.averaged import AveragedEquilibrium, PitchSpread, mean_equilibrium, pitch_spread
 from mbs.linearised.bands import film_share, law_bands, with_reduction
 from mbs.linearised.dynamic import LostMode
@@ -426,7 +426,7 @@ def _padded(peaks: Sequence[Sequence[FloatArray]], values: ComplexArray) -> Floa
 
 def _check(speeds: FloatArray, frequencies: FloatArray, pairs: int, cage_angles: int) -> None:
     """Raise with what is wrong about speeds and frequencies."""
-    problems = []
+    problems = Problems()
     if speeds.ndim != 1 or not 1 <= speeds.size <= MOST_SPEEDS or not np.all(np.isfinite(speeds)):
         problems.append(f"sweep, speeds: got {speeds.size} values; allowed: 1 to {MOST_SPEEDS} finite ones in a row")
     if frequencies.ndim != 1 or not np.all(np.isfinite(frequencies)) or np.any(frequencies < 0.0):
@@ -438,8 +438,7 @@ def _check(speeds: FloatArray, frequencies: FloatArray, pairs: int, cage_angles:
         )
     if not 1 <= cage_angles <= MOST_ANGLES:
         problems.append(f"sweep, cage angles: got {cage_angles}; allowed: a whole number from 1 to {MOST_ANGLES}")
-    if problems:
-        raise InputError(problems)
+    problems.check()
 
 
 def _undamped(points: Sequence[_Recorded], links: Sequence[Along], first: Point, last: Point) -> UndampedSweep:

@@ -27,7 +27,7 @@ import numpy as np
 from scipy.ndimage import uniform_filter1d
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
-from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.errors import AnalysisError, InputError, Problems
 from ehdmaps.extras import needs
 from mbs.modal.estimation import relative_deviation, without_window
 from mbs.modal.records import Responses
@@ -150,7 +150,7 @@ def identify(
     AnalysisError
         If no mode is stable.
     """
-    problems = []
+    problems = Problems()
     low, high = band or (0.0, float(responses.frequency[-1]))
     if not (np.isfinite(low) and np.isfinite(high) and 0.0 <= low < high):
         problems.append(f"band: got {low!r} Hz to {high!r} Hz; allowed: rising, from 0 Hz on")
@@ -158,8 +158,7 @@ def identify(
         problems.append(f"order: got {order!r}; allowed: 1 to {MOST} pole pairs")
     if modes is not None and not 1 <= modes <= MOST:
         problems.append(f"modes: got {modes!r}; allowed: 1 to {MOST}")
-    if problems:
-        raise InputError(problems)
+    problems.check()
     inside = responses.within(low, high)
     # Real and imaginary parts of the lines, shared by numerators and the denominator, and half of them to spare.
     possible = (inside.frequency.size - 1) // 4

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 
 Measured = Literal["displacement", "velocity", "acceleration", "force", "unknown"]
 
@@ -96,7 +96,7 @@ class Hits:
     force_decays: bool = False
 
     def __post_init__(self) -> None:
-        problems = []
+        problems = Problems()
         where = f"hits at {self.reference.label}"
         if not (np.isfinite(self.decay) and self.decay >= 0.0):
             problems.append(f"{where}, decay: got {self.decay!r} 1/s; allowed: finite and >= 0")
@@ -116,8 +116,7 @@ class Hits:
                 )
             elif not 16 <= samples <= LONGEST:
                 problems.append(f"{where}: got {samples} samples; allowed: 16 to {LONGEST}")
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     @property
     def duration(self) -> float:
@@ -158,7 +157,7 @@ class Responses:
     decay: float = 0.0
 
     def __post_init__(self) -> None:
-        problems = []
+        problems = Problems()
         rows, lines = len(self.pairs), self.frequency.size
         if self.frequency.ndim != 1 or not 2 <= lines <= LONGEST:
             problems.append(f"responses: got {lines} frequencies; allowed: a list of 2 to {LONGEST}")
@@ -173,8 +172,7 @@ class Responses:
             problems.append("responses: got values that are not finite; leave those responses out")
         if not (np.isfinite(self.decay) and self.decay >= 0.0):
             problems.append(f"responses, decay: got {self.decay!r} 1/s; allowed: finite and >= 0")
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     @property
     def derivatives(self) -> tuple[int, ...]:

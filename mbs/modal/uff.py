@@ -28,7 +28,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.extras import needs
 from ehdmaps.inputs import check_input
 from ehdmaps.outputs import MARK, Kind, has_mark, written_aside
@@ -330,14 +330,11 @@ def _hits(entries: Sequence[Dataset], factors: tuple[float, float]) -> tuple[Hit
         shown = ", ".join(Channel(*place, "force").label for place in missing)
         raise InputError(f"got responses to hits at {shown} without records of that force; allowed: both for each hit")
     hits = []
-    problems: list[str] = []
+    problems = Problems()
     for place, by_sensor in answers.items():
-        try:
+        with problems:
             hits.append(_hits_at(place, forces[place], by_sensor, factors))
-        except InputError as error:
-            problems += error.problems
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return tuple(hits)
 
 
@@ -348,12 +345,12 @@ def _hits_at(
     reference = Channel(*place, "force")
     numbered = {"the force": _numbered(forces), **{key.label: _numbered(value) for key, value in by_sensor.items()}}
     wanted = sorted(numbered["the force"])
-    problems = [
+    problems = Problems(
         f"hits at {reference.label}: got {len(records)} records of {name} and {len(wanted)} of the force; allowed: one "
         "of each for each hit"
         for name, records in numbered.items()
         if sorted(records) != wanted
-    ]
+    )
     everything = [*forces, *(entry for value in by_sensor.values() for entry in value)]
     steps = np.array([(entry["x"][-1] - entry["x"][0]) / (entry["num_pts"] - 1) for entry in everything])
     uneven = max(
@@ -366,8 +363,7 @@ def _hits_at(
             f"hits at {reference.label}: got records of {min(lengths)} to {max(lengths)} samples, every "
             f"{steps.min():.6g} to {steps.max():.6g} s; allowed: one length and one even step"
         )
-    if problems:
-        raise InputError(problems)
+    problems.check()
 
     def values(records: dict[int, Dataset], direction: int) -> FloatArray:
         return np.stack(

@@ -18,7 +18,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from ehdmaps.arrays import FloatArray, IntArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.physics.solids import STEEL
 
 Freedom = Literal["x", "y", "z", "theta_x", "theta_y", "theta_z"]
@@ -143,7 +143,7 @@ class Inertia:
     offset: float = 0.0
 
     def __post_init__(self) -> None:
-        problems = []
+        problems = Problems()
         if not (math.isfinite(self.mass) and self.mass > 0.0):
             problems.append(f"inertia, mass: got {self.mass!r} kg; allowed: finite and > 0")
         for name in ("polar", "transverse"):
@@ -157,8 +157,7 @@ class Inertia:
             )
         if not math.isfinite(self.offset):
             problems.append(f"inertia, offset: got {self.offset!r} m; allowed: finite")
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     @classmethod
     def cylinder(
@@ -230,9 +229,8 @@ def rigid_body(
     InputError
         With everything that `rigid_problems` finds.
     """
-    problems = rigid_problems(name, parts, freedoms, position, frames or {}, spin)
-    if problems:
-        raise InputError(problems)
+    problems = Problems(rigid_problems(name, parts, freedoms, position, frames or {}, spin))
+    problems.check()
     free = [FREEDOMS.index(freedom) for freedom in freedoms]
     mass, gyroscopic = np.zeros((6, 6)), np.zeros((6, 6))
     for part in parts:

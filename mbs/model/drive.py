@@ -18,7 +18,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from mbs.model.profiles import Course, SpeedProfile
 
 LONGEST_STEP = 1e-4
@@ -97,13 +97,12 @@ class Drive:
     motor_until: float = math.inf
 
     def __post_init__(self) -> None:
-        problems = []
+        problems = Problems()
         if not (math.isfinite(self.inertia) and self.inertia > 0.0):
             problems.append(f"drive, inertia: got {self.inertia!r} kg m2; allowed: finite and > 0")
         if not self.motor_until > 0.0:
             problems.append(f"drive, motor_until: got {self.motor_until!r} s; allowed: > 0")
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     def rate(self, time: float, speed: float, taken: float = 0.0) -> float:
         """Rate at which the speed rises [rad/s2]; a load brings to rest, and does not turn back.

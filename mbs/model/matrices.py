@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from mbs.model.elements import GROUND, ElementDefaults, Forces, Operation, Port, Powers
 
 MOST_SPEEDS = 1000
@@ -55,7 +55,7 @@ class MatrixElement(ElementDefaults):
         for name in ("speeds", "stiffness", "damping"):
             object.__setattr__(self, name, np.ascontiguousarray(getattr(self, name), dtype=np.float64))
         count = self.speeds.size
-        problems = []
+        problems = Problems()
         if self.speeds.ndim != 1 or not 1 <= count <= MOST_SPEEDS or np.any(np.diff(self.speeds) <= 0.0):
             problems.append(f"{self.name!r}, speeds: got {count}; allowed: 1 to {MOST_SPEEDS}, each above the last")
         problems += [
@@ -65,8 +65,7 @@ class MatrixElement(ElementDefaults):
         ]
         if not all(np.all(np.isfinite(getattr(self, name))) for name in ("speeds", "stiffness", "damping")):
             problems.append(f"{self.name!r}: got numbers that are not finite; allowed: finite ones")
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     @cached_property
     def ports(self) -> tuple[Port, ...]:

@@ -10,7 +10,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 
 
 class LoadProfile(Protocol):
@@ -101,7 +101,7 @@ class Course:
                 f"course: got {len(self.times)} times and {len(self.values)} values; allowed: as many of each, at "
                 "least one"
             )
-        problems = []
+        problems = Problems()
         thrice = any(first == third for first, third in zip(self.times, self.times[2:], strict=False))
         if not np.all(np.isfinite(self.times)) or np.any(np.diff(self.times) < 0.0) or thrice:
             problems.append(
@@ -109,8 +109,7 @@ class Course:
             )
         if not np.all(np.isfinite(self.values)):
             problems.append(f"course, values: got {self.values!r:.80}; allowed: finite")
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     @property
     def jumps(self) -> bool:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import Problems
 from ehdmaps.units import closest, short
 from mbs.model.body import CENTRE, Body, Frame
 from mbs.model.elements import GROUND, Element, Forces, Load, Operation, Port, Spring
@@ -356,7 +356,7 @@ class System:
         turning: Sequence[TurningLoad],
     ) -> None:
         """Raise with all that does not fit together."""
-        problems = [] if self.bodies else ["system, bodies: got none; allowed: at least one body"]
+        problems = Problems([] if self.bodies else ["system, bodies: got none; allowed: at least one body"])
         seen: set[str] = {GROUND}
         names = [thing.name for group in (self.bodies, springs, loads, elements, turning) for thing in group]
         for name in names:
@@ -380,8 +380,7 @@ class System:
                         f"{where}: {on} and {against} are {apart * 1e3:.4g} mm apart; allowed: the same point; give "
                         "one of the bodies a frame there"
                     )
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
 
 def _connections(

@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.jobs.job import Job, check_oil
 from ehdmaps.jobs.job_text import bearing_keys, lubricant_keys, table_lines
 from ehdmaps.jobs.problem import LOAD_AXIS, SPEED_AXIS, AxisRule
@@ -167,15 +167,12 @@ class PlanResult:
         InputError
             With everything that a job does not allow.
         """
-        problems: list[str] = []
+        problems = Problems()
         jobs = []
         for entry, name in zip(self.needed, names or ["plan"] * len(self.needed), strict=True):
-            try:
+            with problems:
                 jobs.append(planned_job(self.scene, entry, name))
-            except InputError as error:
-                problems += error.problems
-        if problems:
-            raise InputError(tuple(dict.fromkeys(problems)))
+        problems.check()
         return tuple(jobs)
 
 
@@ -210,12 +207,10 @@ def plan(scene: Scene, settings: PlanSettings | None = None) -> PlanResult:
 
 def _dry_model(scene: Scene, settings: PlanSettings) -> Model:
     """The scene with dry contacts, from which loads and speeds follow; all problems at once."""
-    problems: list[str] = []
+    problems = Problems()
     model = None
-    try:
+    with problems:
         model = assemble(_dry_scene(scene), "hertz", clearance=settings.clearance)
-    except InputError as error:
-        problems += error.problems
     if not scene.has_bearings:
         problems.append("got no bearing; allowed: at least one [[bearings]], which is what a map is for")
     if warm := [entry.name for entry in scene.bearings if entry.thermal is not None]:

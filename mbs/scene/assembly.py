@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, cast
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import Surface
@@ -67,15 +67,12 @@ def build_bodies(specs: Iterable[BodySpec]) -> tuple[Body, ...]:
     AnalysisError
         If the modes or static shapes of a reduction are not found.
     """
-    problems: list[str] = []
+    problems = Problems()
     bodies = []
     for spec in specs:
-        try:
+        with problems:
             bodies.append(build_body(spec))
-        except InputError as error:
-            problems += error.problems
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return tuple(bodies)
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from mbs.model.drive import DrivenSpeed
 from mbs.model.profiles import Advanced, Constant, Course, SpeedProfile
 from mbs.scene.fields import HERTZ
@@ -68,14 +68,11 @@ def with_clearance(scene: Scene, clearance: float) -> Scene:
     InputError
         For each bearing that cannot have it.
     """
-    problems: list[str] = []
+    problems = Problems()
     for entry in scene.of_all_kinds:
-        try:
+        with problems:
             scene = with_clearance_of(scene, entry.name, clearance)
-        except InputError as error:
-            problems += error.problems
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return dataclasses.replace(scene, tolerances=of_all(scene.tolerances, "clearance"))
 
 

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from ehdmaps.choices import ROUGHNESS, STRUCTURE, SUPPLY, Choice, one_of
-from ehdmaps.errors import EhdmapsError, InputError
+from ehdmaps.errors import EhdmapsError, InputError, Problems
 from ehdmaps.units import RPM, TEMPERATURE, Display, quantity
 from mbs.model.relaxation import DEFAULT_FILMS, FILM_WORDS, Films
 from mbs.scene.fields import DEGREE, HERTZ, MICROMETRE
@@ -358,10 +358,9 @@ def _with_law(subject: Subject, name: str) -> Subject:
 
 def _with_map(subject: Subject, path: str) -> Subject:
     """A subject with the law of a map."""
-    problems: list[str] = []
+    problems = Problems()
     laws = opened_maps([path], subject.scene, problems)
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return dataclasses.replace(subject, law=laws[0])
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import LENGTH
@@ -57,15 +57,14 @@ class MapSet:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "maps", tuple(self.maps))
-        problems = [] if self.maps else ["--map: got none; allowed: at least one map"]
+        problems = Problems([] if self.maps else ["--map: got none; allowed: at least one map"])
         problems += [
             f"--map: got two maps for the same contacts ({_made_for(first)}, {_made_for(second)}); allowed: one map "
             "for each type of bearing; assemble a model for each map to compare them"
             for first, second in itertools.combinations(self.maps, 2)
             if _same_type(first, second)
         ]
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     def of(self, geometry: BearingGeometry) -> EHDMap | None:
         """The map that was made for the contacts of a bearing; None if there is none.
@@ -250,14 +249,13 @@ def _check_all_suit(maps: Iterable[tuple[str, EHDMap]], bearings: Sequence[Beari
     for spec in bearings:
         types.setdefault(spec.geometry.name, []).append(spec.name)
     there = "; ".join(f"{kind} ({', '.join(names)})" for kind, names in types.items())
-    problems = [
+    problems = Problems(
         f"--map: {name} is made for {_made_for(emap)}{_nearest(emap, bearings)}, which no bearing of the scene is; "
         f"there are {there}; leave it out"
         for name, emap in maps
         if not any(suits(emap, spec.geometry) for spec in bearings)
-    ]
-    if problems:
-        raise InputError(problems)
+    )
+    problems.check()
 
 
 def _differing(first: BearingGeometry, second: BearingGeometry) -> list[str]:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import Problems
 from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.physics.designations.clearance import ClearanceRange, clearance_range
 from ehdmaps.physics.lubricant import Lubricant
@@ -143,14 +143,13 @@ class Scene:
         for name in _SEQUENCES:
             object.__setattr__(self, name, tuple(getattr(self, name)))
         object.__setattr__(self, "title", self.title or self.name)
-        problems = []
+        problems = Problems()
         if not math.isfinite(self.speed):
             problems.append(f"scene, speed: got {self.speed!r} rad/s; allowed: finite")
         low, high = OIL_TEMPERATURES
         if not low <= self.temperature <= high:
             problems.append(f"scene, temperature: got {self.temperature!r} K; allowed: {low:g} to {high:g} K")
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     @property
     def bearings(self) -> tuple[BearingSpec, ...]:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.designations.clearance import MOUNTED
 from ehdmaps.physics.oil_supply import OilSupply
@@ -68,9 +68,8 @@ class RigidSpec:
 
     def __post_init__(self) -> None:
         _freeze(self, "parts", "freedoms")
-        problems = rigid_problems(self.name, self.parts, self.freedoms, self.position, self.frames, self.spin)
-        if problems:
-            raise InputError(problems)
+        problems = Problems(rigid_problems(self.name, self.parts, self.freedoms, self.position, self.frames, self.spin))
+        problems.check()
 
 
 @dataclass(frozen=True)

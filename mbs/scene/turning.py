@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.units import LENGTH, RPM, Display
 from mbs.model.elements import GROUND
 from mbs.model.turning import TurningLoad, unbalance
@@ -216,7 +216,7 @@ def with_places(bodies: Iterable[BodySpec], unbalances: Sequence[Unbalance]) -> 
     InputError
         If a body has no axis along which a place could be, or has a frame of that name.
     """
-    problems = []
+    problems = Problems()
     changed = list(bodies)
     names = [body.name for body in changed]
     for entry in unbalances:
@@ -236,8 +236,7 @@ def with_places(bodies: Iterable[BodySpec], unbalances: Sequence[Unbalance]) -> 
                 raise InputError("at: allowed on rigid bodies and shafts; name a frame of the body as `on`")
         except InputError as error:
             problems += [f"unbalance {entry.name!r}: {problem}" for problem in error.problems]
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return tuple(changed)
 
 

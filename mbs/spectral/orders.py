@@ -24,7 +24,7 @@ from scipy.fft import next_fast_len
 from scipy.interpolate import make_interp_spline
 
 from ehdmaps.arrays import ComplexArray, FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.units import written
 from mbs.spectral.levels import level
 from mbs.spectral.run_signal import RPM, RunSignal
@@ -183,7 +183,7 @@ def angle_signal(run: RunSignal, highest: float, lowest_speed: float | None = No
     top = float(run.speed.max())
     lowest = _SLOWEST * top if lowest_speed is None else lowest_speed
     needed = LEAST_OVERSAMPLING * highest
-    problems = []
+    problems = Problems()
     if not (math.isfinite(highest) and highest > 0.0):
         problems.append(f"orders, highest frequency: got {highest!r} Hz; allowed: finite and > 0")
     elif run.rate < needed * (1.0 - 1e-6):
@@ -196,8 +196,7 @@ def angle_signal(run: RunSignal, highest: float, lowest_speed: float | None = No
             f"orders, lowest speed: got {written(lowest * RPM)} rpm; allowed: above 0, below the highest of "
             f"{written(top * RPM)} rpm"
         )
-    if problems:
-        raise InputError(problems)
+    problems.check()
     fast = np.flatnonzero(run.speed >= lowest)
     turned = float(run.angle[fast[-1]] - run.angle[fast[0]]) / float(run.speed[fast].min())
     samples = round(max(turned * needed, run.duration * max(_DENSE * highest, run.rate)))

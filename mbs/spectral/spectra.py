@@ -25,7 +25,7 @@ import scipy  # its parts at first use: scipy.signal takes half a second
 from scipy.fft import next_fast_len
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.units import written
 from mbs.spectral.run_signal import RPM, RunSignal
 
@@ -114,9 +114,8 @@ def short_time_spectra(run: RunSignal, window: float, band: tuple[float, float])
     InputError
         With every value that is not possible, or whose result would be too large.
     """
-    problems = [*_band_problems(run, band), *_window_problems(run, window, band)]
-    if problems:
-        raise InputError(problems)
+    problems = Problems([*_band_problems(run, band), *_window_problems(run, window, band)])
+    problems.check()
     length = 2 * round(0.5 * window * run.rate)
     hop = max(length // 4, 1)
     weights = scipy.signal.get_window("hann", length)
@@ -183,9 +182,8 @@ def amplitude_spectrum(run: RunSignal, speed: float, window: float, highest: flo
     InputError
         If the run does not pass the speed with half a window on both sides, or window or band do not fit it.
     """
-    problems = [*_band_problems(run, (0.0, highest)), *_window_problems(run, window, (0.0, highest))]
-    if problems:
-        raise InputError(problems)
+    problems = Problems([*_band_problems(run, (0.0, highest)), *_window_problems(run, window, (0.0, highest))])
+    problems.check()
     half = round(0.5 * window * run.rate)
     # The speeds at which a whole window has its middle.
     inner = run.speed[half : run.speed.size - half]

@@ -26,7 +26,7 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.inputs import check_input, decimal_points, first_bytes, separator
 from ehdmaps.outputs import MARK, TABLE, written_aside
 from ehdmaps.units import RPM, short
@@ -114,7 +114,7 @@ def read_table(path: Path) -> tuple[list[TimeChannel], FloatArray, FloatArray]:
         names.pop()
     if len(names) > MOST_CHANNELS + 2:
         raise InputError(f"{path}: got {len(names)} columns; allowed: up to {MOST_CHANNELS + 2}")
-    problems: list[str] = []
+    problems = Problems()
     channels, factors = [], []
     for column, text in enumerate(names, start=1):
         title = _HEAD.fullmatch(text)
@@ -131,8 +131,7 @@ def read_table(path: Path) -> tuple[list[TimeChannel], FloatArray, FloatArray]:
             continue
         channels.append(TimeChannel(title["name"] or f"column {column}", recorded, unit))
         factors.append(factor)
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return channels, np.array(factors), _numbers(path, skipped, delimiter, len(names))
 
 

@@ -19,7 +19,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator, make_lsq_spline
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.units import RPM
 from mbs.timedata.csv_file import read_table
 from mbs.timedata.pulses import FEWEST, counted, rising_flanks
@@ -73,13 +73,12 @@ class SpeedSource:
             for name, value in (("channel", self.channel), ("tacho", self.tacho), ("table", self.table))
             if value is not None
         ]
-        problems = []
+        problems = Problems()
         if len(given) > 1:
             problems.append(f"speed: got {' and '.join(given)}; allowed: one of them")
         if not 0.0 < self.pulses <= MOST_PULSES:
             problems.append(f"speed, pulses: got {self.pulses!r} a turn; allowed: above 0 up to {MOST_PULSES}")
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
 
 AS_IT_IS = SpeedSource()

@@ -33,7 +33,7 @@ import numpy as np
 from scipy.io import wavfile
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.inputs import check_input, first_bytes, read_text
 from ehdmaps.outputs import MARK, Kind, has_mark, written_aside
 from ehdmaps.units import RPM, closest, short
@@ -176,7 +176,7 @@ def _channels(path: Path, table: dict[str, Any]) -> tuple[list[TimeChannel], Flo
     given, beside = table.get("channels"), scale_path(path)
     if not isinstance(given, list) or not 1 <= len(given) <= MOST_CHANNELS:
         raise InputError(f"{beside}: got no list [[channels]]; allowed: 1 to {MOST_CHANNELS}, such as {_EXAMPLE}")
-    problems: list[str] = []
+    problems = Problems()
     channels, factors = [], []
     for number, entry in enumerate(given, start=1):
         where = f"{beside}, channel {number}"
@@ -194,8 +194,7 @@ def _channels(path: Path, table: dict[str, Any]) -> tuple[list[TimeChannel], Flo
             continue
         channels.append(TimeChannel(str(name), recorded, si))
         factors.append(factor * scale)
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return channels, np.array(factors)
 
 

@@ -18,7 +18,7 @@ from scipy.fft import next_fast_len
 from scipy.linalg import expm
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.errors import AnalysisError, Problems
 from mbs.linearised.linear import StateSpace, input_matrix, sensor_matrix, state_space
 from mbs.linearised.modes import Modes
 from mbs.modal.records import LONGEST, Channel, Hits, Measured
@@ -82,7 +82,7 @@ class HammerTest:
     spread: float = 0.5
 
     def __post_init__(self) -> None:
-        problems = []
+        problems = Problems()
         if not (math.isfinite(self.highest) and 0.0 < self.highest <= 1e6):
             problems.append(f"hammer test, highest: got {self.highest!r} Hz; allowed: above 0, up to 1 MHz")
         elif not (math.isfinite(self.duration) and 64.0 <= self.duration * PER_HIGHEST * self.highest <= LONGEST / 4):
@@ -98,8 +98,7 @@ class HammerTest:
             problems.append(f"hammer test, seed: got {self.seed!r}; allowed: 0 or more")
         if not 0.0 <= self.spread < 1.0:
             problems.append(f"hammer test, spread: got {self.spread!r}; allowed: 0 to below 1")
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     @property
     def step(self) -> float:

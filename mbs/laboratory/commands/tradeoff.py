@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.program import tell
 from mbs.analyses.campbell import campbell_problems
@@ -40,7 +40,7 @@ def run_contacts(arguments: argparse.Namespace) -> tuple[str, int]:
 
 def _asked(arguments: argparse.Namespace) -> tuple[Scene, list[LawChoice], float | None, TradeoffSettings]:
     """Read what is measured of a scene; all problems at once."""
-    problems: list[str] = []
+    problems = Problems()
     band = read_band(arguments, problems)
     scene, laws, clearance = read_compared(arguments, problems, TRADE)
     if scene is None:
@@ -50,6 +50,5 @@ def _asked(arguments: argparse.Namespace) -> tuple[Scene, list[LawChoice], float
     runs = not arguments.linear_only
     if runs:
         problems += [f"{problem}; or --linear-only" for problem in campbell_problems(scene, settings)]
-    if problems:
-        raise InputError(tuple(dict.fromkeys(problems)))
+    problems.check()
     return scene, [law for law in laws if law.maps is not None], clearance, TradeoffSettings(settings, runs)

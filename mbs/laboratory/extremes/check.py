@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import Problems
 from ehdmaps.outputs import MARK, Kind, Output, has_mark, output_problems, write_text
 from ehdmaps.units import closest
 
@@ -220,11 +220,10 @@ def searched(
         If there is no such part, or the file cannot be written.
     """
     only, output = arguments.only, arguments.output
-    problems = output_problems([Output("-o", output, CHECKS)], read)
+    problems = Problems(output_problems([Output("-o", output, CHECKS)], read))
     if only not in (None, *parts):
         problems.append(f"--only: got {only!r:.60}{closest(only, tuple(parts))}; allowed: {', '.join(parts)}")
-    if problems:
-        raise InputError(problems)
+    problems.check()
     checks = [check for name, make in parts.items() if only in (None, name) for check in make()]
     table, record = checks_text(checks), checks_json(checks)
     if output is not None:

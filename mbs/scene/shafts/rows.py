@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from pathlib import Path
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.inputs import decimal_points, read_text, separator
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.solids import STEEL
@@ -149,12 +149,11 @@ def csv_sections(path: Path) -> list[Section]:
     InputError
         With every problem.
     """
-    problems: list[str] = []
+    problems = Problems()
     found = _chained(csv_rows(path), problems)
     if not found and not problems:
         problems.append(f"{path}: got no rows; allowed: 1 to {MOST_PARTS}")
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return found
 
 
