@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,9 +29,6 @@ from mbs.output.model_text import clean, heading
 from mbs.output.reduction_text import reduction_lines
 from mbs.output.sweep_data import orbits, sensed
 from mbs.planning.question import over_speeds
-
-if TYPE_CHECKING:
-    pass
 
 _HEAD = "critical speeds      order       speed   frequency/Hz   damping ratio   whirl"
 _WIDTH = 102

@@ -6,7 +6,6 @@ import argparse
 import dataclasses
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -42,9 +41,6 @@ from mbs.timedata.netcdf_file import signal_variables
 from mbs.timedata.records import TimeChannel, TimeData, TimeRecord
 from mbs.timedata.speed import SpeedSource, with_speed
 from mbs.timedata.wav_file import sound_channel, write_sound
-
-if TYPE_CHECKING:
-    pass
 
 _MOST_SPECTRA = 4
 _LARGEST_SPEED = 1e6 / RPM.factor
@@ -97,7 +93,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         outside = outside or any(entry.record.outside.values())
     lines += signal_lines(data.records) if data else []
     lines += [*judged.last, *(f"warning: {line}" for line in found.failed)]
-    dataset = judged.marked(with_spectra(found.dataset, spectra))
+    dataset = judged.marked(with_spectra(found.dataset, spectra, _sensors(data)))
     dataset = dataset.assign_attrs(tolerance="\n".join(tolerated.lines)) if tolerated else dataset
     lines += write(arguments, dataset, figure)
     if getattr(arguments, "signals", None) and data:
@@ -223,7 +219,7 @@ def _recorded(arguments: argparse.Namespace) -> tuple[str, int]:
         from mbs.output.run_plot import signals_figure
 
         figure = signals_figure(data, spectra)
-    lines += write(arguments, with_spectra(dataset, spectra), figure)
+    lines += write(arguments, with_spectra(dataset, spectra, _sensors(data)), figure)
     if arguments.signals:
         lines += write_time_data(arguments.signals, data)
     return "\n".join([*lines, *_sound(arguments, data)]), 0
@@ -243,6 +239,11 @@ def _spectra_of(data: TimeData, wanted: _Spectra, scene: Scene | None) -> list[l
     highest = wanted.highest or (scene.campbell.highest if scene else HIGHEST)
     each = [amplitudes_at(record, wanted.speeds, wanted.window, highest) for record in data.records]
     return [[run[place] for run in each] for place in range(len(wanted.speeds))]
+
+
+def _sensors(data: TimeData | None) -> list[str]:
+    """Names of the sensors of runs."""
+    return [channel.name for channel in data.records[0].sensors] if data else []
 
 
 def _pairs(found: RunUps) -> list[tuple[str, RunUpResult]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -42,9 +42,6 @@ from mbs.scene.assembly import Model
 from mbs.scene.scene import Scene
 from mbs.settings import MOST_SPEEDS, ROUND_OFF, SweepRange
 from mbs.unknowns.over_speed import SpeedBands
-
-if TYPE_CHECKING:
-    pass
 
 _LEAST_SHARE = 0.05
 _PEAKS = 5

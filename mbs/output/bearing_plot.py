@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -25,9 +25,6 @@ from mbs.output.page import grid, page
 from mbs.output.page import grid as quiet_grid
 from mbs.scene.assembly import Model
 from mbs.scene.fields import FORCE, MICROMETRE
-
-if TYPE_CHECKING:
-    pass
 
 _SIDES = COLOURS[:2]
 """Colours of the inner and the outer contact."""

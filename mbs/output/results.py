@@ -66,7 +66,9 @@ def with_energy(dataset: xr.Dataset, energy: EnergyBalance) -> xr.Dataset:
     return dataset.assign(energy_residual=variable((), energy.residual, "J", words))
 
 
-def with_spectra(dataset: xr.Dataset, spectra: Sequence[Sequence[Sequence[AmplitudeSpectrum]]]) -> xr.Dataset:
+def with_spectra(
+    dataset: xr.Dataset, spectra: Sequence[Sequence[Sequence[AmplitudeSpectrum]]], sensors: Sequence[str]
+) -> xr.Dataset:
     """The dataset of a run with spectra about some speeds; over the dim law where there is more than one run.
 
     Parameters
@@ -75,6 +77,8 @@ def with_spectra(dataset: xr.Dataset, spectra: Sequence[Sequence[Sequence[Amplit
         Result with the dim sensor, and law of several runs.
     spectra : sequence of sequence of sequence of AmplitudeSpectrum
         Spectra about each speed, of each run, of each sensor; all with one window.
+    sensors : sequence of str
+        Names of these sensors; channels of a file that are none, such as a speed, have no spectrum.
     """
     if not spectra:
         return dataset
@@ -84,22 +88,21 @@ def with_spectra(dataset: xr.Dataset, spectra: Sequence[Sequence[Sequence[Amplit
     if values.shape[0] == 1:
         values, dims = values[0], dims[1:]
     first = [about[0][0] for about in spectra]
-    words = "amplitude of a sine at each line"
-    window = f"window of {first[0].window:.6g} s about the speed"
-    return dataset.assign(
-        spectrum_amplitude=variable(dims, values, "by signal_unit", f"{words}, {window}"),
-        spectrum_time=variable(
-            "spectrum_speed", np.array([spectrum.time for spectrum in first]), "s", "middle of the window"
-        ),
-    ).assign_coords(
-        spectrum_speed=variable(
-            "spectrum_speed",
-            np.array([spectrum.speed for spectrum in first]),
-            "rad/s",
-            "speed in the middle of the window",
-        ),
-        spectrum_frequency=variable("spectrum_frequency", first[0].frequencies, "Hz", "frequency"),
+    times, speeds = (np.array([getattr(spectrum, name) for spectrum in first]) for name in ("time", "speed"))
+    words = f"amplitude of a sine at each line, window of {first[0].window:.6g} s about the speed"
+    found = xr.Dataset(
+        {
+            "spectrum_amplitude": variable(dims, values, "by signal_unit", words),
+            "spectrum_time": variable("spectrum_speed", times, "s", "middle of the window"),
+        },
+        coords={
+            "sensor": list(sensors),
+            "spectrum_speed": variable("spectrum_speed", speeds, "rad/s", "speed in the middle of the window"),
+            "spectrum_frequency": variable("spectrum_frequency", first[0].frequencies, "Hz", "frequency"),
+        },
     )
+    found = found.reindex(sensor=dataset["sensor"]).drop_vars("sensor")
+    return dataset.assign(found.data_vars).assign_coords(found.coords)
 
 
 _STATE: tuple[tuple[str, str, str, Callable[[BearingState], float]], ...] = (

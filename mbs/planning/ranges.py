@@ -268,9 +268,11 @@ def needed_ranges(
     if not 1.0 <= margin <= MOST_MARGIN:
         raise InputError(f"plan, margin: got {margin!r}; allowed: 1 to {MOST_MARGIN:g}")
     groups: dict[object, list[int]] = {}
+    bearing: Any
     for index, bearing in enumerate(bearings):
         mapped = isinstance(bearing, BearingElement)
-        groups.setdefault(same_contacts(bearing.bearing.geometry) if mapped else bearing.same_films, []).append(index)
+        key: object = same_contacts(bearing.bearing.geometry) if mapped else bearing.same_films
+        groups.setdefault(key, []).append(index)
     found = []
     for members in groups.values():
         names = tuple(bearings[index].name for index in members)
@@ -282,8 +284,8 @@ def needed_ranges(
                 "equilibrium of the scene, so that no range can be told; give the scene loads, spins, or a smaller "
                 "clearance"
             )
-        one, highest = bearings[members[0]], margin * load
-        mapped, of_points = isinstance(one, BearingElement), getattr(one, "of_points", False)
+        one: Any = bearings[members[0]]
+        mapped, of_points, highest = isinstance(one, BearingElement), getattr(one, "of_points", False), margin * load
         found.append(
             Needed(
                 geometry=one.bearing.geometry if mapped else one.force.geometry,

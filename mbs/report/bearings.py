@@ -11,18 +11,16 @@ from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.figures import typeset
 from ehdmaps.report.chart import number, shown
 from ehdmaps.report.page import Markup, joined, pairs, table, tag
-from ehdmaps.units import DAMPER, FILM, PRESSURE, SPEED, SPRING
+from ehdmaps.units import SPEED
 from mbs.bearings.films import ContactState
 from mbs.bearings.force_at_point import RollerLoads
 from mbs.model.on_rings import ring_matrices
-from mbs.output.state_text import DAMPINGS, STIFFNESSES, loss_words
 from mbs.report.examination import Examination
+from mbs.report.located import clean, contact_rows, located_matrix
 from mbs.scene.assembly import ring_motions
 from mbs.scene.fields import FORCE
 
 _SHOWN = (1, 2, 4, 5)
-_NAMES = ("y", "z", "θy", "θz")
-_ROUND_OFF = 1e-8
 _LEAST_LOAD = 0.01
 _MIDDLE, _PITCH, _LONGEST = 172.0, 62.0, 62.0
 """Middle, pitch circle and longest bar of a drawing [px]."""
@@ -54,13 +52,8 @@ def bearings(found: Examination) -> Iterator[Markup]:
             ("entrainment speed", shown(SPEED, float(bearing.entrainment_speed(balance.operation)))),
             ("loaded rollers", f"{loaded(rollers).size} of {rollers.load.size} (above 1 % of the highest load)"),
             ("highest roller load", shown(FORCE, float(rollers.load.max()))),
-            ("Hertz pressure", _pair(PRESSURE.unit, 1e-9 * contacts.hertz_pressure)),
-            ("central film", _pair(FILM.unit, 1e6 * contacts.central_film)),
-            ("smallest film", _pair(FILM.unit, 1e6 * contacts.minimum_film)),
+            *contact_rows(contacts, found.statics.losses[index], "rollers", model.surface),
         ]
-        if model.surface is not None and not model.surface.smooth:
-            rows.append(("film parameter Λ", _pair("", contacts.minimum_film / model.surface.roughness)))
-        rows.append(("rolling", loss_words(found.statics.losses[index]).removeprefix("rolling ")))
         title = f"Loads of the rollers of bearing {index + 1}"
         yield joined(
             tag("h3", f"Bearing {bearing.name}"),
@@ -76,7 +69,10 @@ def bearings(found: Examination) -> Iterator[Markup]:
             ),
             tag(
                 "div",
-                *(_matrix(words, matrix) for words, matrix in zip(("Stiffness K", "Damping C"), matrices, strict=True)),
+                *(
+                    located_matrix(words, matrix, _SHOWN)
+                    for words, matrix in zip(("Stiffness K", "Damping C"), matrices, strict=True)
+                ),
                 class_="matrices",
             ),
         )
@@ -163,7 +159,7 @@ def _says(rollers: RollerLoads) -> str:
         return "No roller is loaded."
     most = int(np.argmax(rollers.load))
     share = 100.0 * float(rollers.load[most] / rollers.load.sum())
-    angle = float(_clean(math.degrees(float(rollers.angle[most]))))
+    angle = float(clean(math.degrees(float(rollers.angle[most]))))
     return (
         f"{carrying.size} of {rollers.load.size} rollers carry more than 1 % of the highest load. "
         f"The one at {angle:.4g}° carries most, "
@@ -180,7 +176,7 @@ def _roller_table(rollers: RollerLoads, inner: ContactState, outer: ContactState
     for k in carrying[np.argsort(rollers.angle[carrying])]:
         pressures = [number(1e-9 * float(side.hertz_pressure[k].max())) for side in (inner, outer)]
         smallest = [_film(side.minimum_film[k]) for side in (inner, outer)] if films else []
-        angle = f"{_clean(math.degrees(float(rollers.angle[k]))):.4g}"
+        angle = f"{clean(math.degrees(float(rollers.angle[k]))):.4g}"
         rows.append((angle, number(float(rollers.load[k]), 4), *pressures, *smallest))
     heads = ("angle, °", "load, N", "Hertz pressure inner, GPa", "outer, GPa")
     more = (typeset("smallest film inner, um"), typeset("outer, um")) if films else ()
@@ -204,33 +200,6 @@ def _film(values: FloatArray) -> str:
     return number(1e6 * float(known.min())) if known.size else "-"
 
 
-def _pair(unit: str, values: FloatArray) -> str:
-    """A value of the inner and one of the outer contact."""
-    if not np.isfinite(values).all():
-        return "none known"
-    return f"{number(float(values[0]))} inner, {number(float(values[1]))} {unit} outer".replace("  ", " ")
-
-
-def _matrix(words: str, matrix: FloatArray) -> Markup:
-    """A matrix on the inner ring, without the axial rows."""
-    units, display = (STIFFNESSES, SPRING) if words.startswith("S") else (DAMPINGS, DAMPER)
-    values = display.factor * matrix
-    scale = np.sqrt(np.abs(np.diag(values)))
-    rows = [
-        (
-            _NAMES[i],
-            *(f"{_clean(float(values[row, column]), scale[row] * scale[column]):.4g}" for column in _SHOWN),
-        )
-        for i, row in enumerate(_SHOWN)
-    ]
-    return table(("", *_NAMES), rows, f"{words} in {typeset(units)}")
-
-
 def _part(value: float, scale: float = 1.0) -> str:
     """A part of a vector."""
-    return number(_clean(value, scale), 4)
-
-
-def _clean(value: float, scale: float = 1.0) -> float:
-    """Zero in place of what is left by round-off."""
-    return 0.0 if abs(value) < _ROUND_OFF * scale else float(value)
+    return number(clean(value, scale), 4)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.figures import typeset
+from ehdmaps.physics.surface import Surface
 from ehdmaps.report.chart import number, shown
 from ehdmaps.report.page import Markup, joined, pairs, table, tag
 from ehdmaps.units import DAMPER, FILM, PRESSURE, SPRING, Display
@@ -23,7 +24,7 @@ from mbs.report.examination import Examination
 from mbs.scene.fields import FORCE
 
 _SHOWN = (0, 1, 2, 4, 5)
-_NAMES = ("x", "y", "z", "θy", "θz")
+_NAMES = ("x", "y", "z", "θx", "θy", "θz")
 _ROUND_OFF = 1e-8
 
 
@@ -37,8 +38,8 @@ class _Told(NamedTuple):
 
 def _balls(at: Settled, contacts: BearingContacts) -> _Told:
     """Contact angles of balls, and what each carries."""
-    means = [number(_clean(math.degrees(at.loads.mean_angle(side)))) for side in (0, 1)]
-    angles = [[number(_clean(float(one))) for one in side] for side in np.degrees(at.loads.contact_angle)]
+    means = [number(clean(math.degrees(at.loads.mean_angle(side)))) for side in (0, 1)]
+    angles = [[number(clean(float(one))) for one in side] for side in np.degrees(at.loads.contact_angle)]
     pressures = [[number(PRESSURE.value(float(one))) for one in side.hertz_pressure[:, 0]] for side in contacts.sides]
     heads = "contact angle inner, °", "outer, °", "Hertz pressure inner, GPa", "outer, GPa"
     columns = tuple((head, tuple(each)) for head, each in zip(heads, (*angles, *pressures), strict=True))
@@ -86,7 +87,7 @@ def located_bearings(found: Examination) -> Iterator[Markup]:
         ]
         each = [
             (
-                f"{_clean(math.degrees(float(at.loads.angle[j]))):.4g}",
+                f"{clean(math.degrees(float(at.loads.angle[j]))):.4g}",
                 *(number(float(side[j]), 4) for side in loads),
                 *(column[j] for _, column in own.columns),
             )
@@ -101,7 +102,9 @@ def located_bearings(found: Examination) -> Iterator[Markup]:
         )
 
 
-def contact_rows(contacts: BearingContacts, loss: RollingLoss) -> list[tuple[str, str]]:
+def contact_rows(
+    contacts: BearingContacts, loss: RollingLoss, elements: str = "elements", surface: Surface | None = None
+) -> list[tuple[str, str]]:
     """Rows on pressures, films and the torque of a bearing.
 
     Parameters
@@ -110,15 +113,20 @@ def contact_rows(contacts: BearingContacts, loss: RollingLoss) -> list[tuple[str
         Contacts of the bearing.
     loss : RollingLoss
         What rolling costs in it.
+    elements : str
+        What rolls, in the plural.
+    surface : Surface, optional
+        Surfaces of its raceways, where films of rough ones are known.
     """
-    return [
-        (words, _pair(display, values))
-        for words, display, values in (
-            ("Hertz pressure", PRESSURE, contacts.hertz_pressure),
-            ("central film", FILM, contacts.central_film),
-            ("smallest film", FILM, contacts.minimum_film),
-        )
-    ] + [("rolling", loss_words(loss, "elements").removeprefix("rolling "))]
+    rows = [
+        ("Hertz pressure", PRESSURE, contacts.hertz_pressure),
+        ("central film", FILM, contacts.central_film),
+        ("smallest film", FILM, contacts.minimum_film),
+    ]
+    if surface is not None and not surface.smooth:
+        rows.append(("film parameter Λ", Display(""), contacts.minimum_film / surface.roughness))
+    told = ("rolling", loss_words(loss, elements).removeprefix("rolling "))
+    return [*((words, _pair(display, values)) for words, display, values in rows), told]
 
 
 def _pair(display: Display, values: FloatArray) -> str:
@@ -126,29 +134,37 @@ def _pair(display: Display, values: FloatArray) -> str:
     if not np.isfinite(values).all():
         return "none known"
     inner, outer = (number(display.value(float(value))) for value in values)
-    return f"{inner} inner, {outer} {display.unit} outer"
+    return f"{inner} inner, {f'{outer} {display.unit}'.rstrip()} outer"
 
 
-def located_matrix(words: str, matrix: FloatArray) -> Markup:
-    """A matrix on the inner ring, without the turning about its axis.
+def located_matrix(words: str, matrix: FloatArray, shown_freedoms: Sequence[int] = _SHOWN) -> Markup:
+    """A matrix (6, 6) as a table.
 
     Parameters
     ----------
     words : str
-        Name, such as "Stiffness K" or "Damping C".
-    matrix : ndarray, shape (6, 6)
-        The matrix.
+        Name of the matrix: "Stiffness K" or "Damping C".
+    matrix : array (6, 6)
+        Matrix on the inner ring [N/m] or [N s/m], and the like for rotations.
+    shown_freedoms : sequence of int
+        Freedoms that are shown.
     """
     units, display = (STIFFNESSES, SPRING) if words.startswith("S") else (DAMPINGS, DAMPER)
     values = display.factor * matrix
     scale = np.sqrt(np.abs(np.diag(values)))
     rows = [
-        (_NAMES[i], *(f"{_clean(float(values[row, k]), float(scale[row] * scale[k])):.4g}" for k in _SHOWN))
-        for i, row in enumerate(_SHOWN)
+        (_NAMES[i], *(f"{clean(float(values[i, k]), float(scale[i] * scale[k])):.4g}" for k in shown_freedoms))
+        for i in shown_freedoms
     ]
-    return table(("", *_NAMES), rows, f"{words} in {typeset(units)}")
+    return table(("", *(_NAMES[i] for i in shown_freedoms)), rows, f"{words} in {typeset(units)}")
 
 
-def _clean(value: float, scale: float = 1.0) -> float:
-    """Zero in place of what is left by round-off."""
-    return 0.0 if abs(value) < _ROUND_OFF * scale else value
+def clean(value: float, scale: float = 1.0) -> float:
+    """The value, or 0 where it is round-off of a scale.
+
+    Parameters
+    ----------
+    value, scale : float
+        Value, and what it is small beside.
+    """
+    return 0.0 if abs(value) < _ROUND_OFF * scale else float(value)

@@ -409,6 +409,13 @@ class TestRuns:
             spectrum = data["spectrum_amplitude"].sel(sensor="side").squeeze().values
             shaken = data["spectrum_frequency"].values[np.argmax(spectrum)]
             assert shaken == pytest.approx(300.0, abs=60.0)  # half a line of the window
+        # of a table the speed is a channel, too, which has no spectrum
+        run(capsys, "runup", "machine.toml", "--signals", "sim.csv")
+        assert run(capsys, "runup", "sim.csv", "-o", "again.nc", "--spectrum-at", "1000 rpm")[0] == 0
+        with xr.open_dataset("again.nc") as data:
+            found = data["spectrum_amplitude"].squeeze()
+            np.testing.assert_allclose(found.sel(sensor="side"), spectrum, rtol=1e-4)  # twelve digits of the table
+            assert found.sel(sensor="speed").isnull().all()
 
     def test_a_measured_run_beside_a_simulated_one(self, here, capsys):
         run(capsys, "campbell", "machine.toml", "--signals", "sim.csv")

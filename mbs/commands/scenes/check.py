@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry
@@ -26,9 +25,6 @@ from mbs.scene.locating.ribs import open_sides
 from mbs.scene.scene import Scene
 from mbs.scene.specs import BearingSpec, LocatingSpec, RigidSpec, ShaftSpec
 from mbs.unknowns.words import open_list
-
-if TYPE_CHECKING:
-    pass
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:

@@ -163,7 +163,7 @@ def _rewritten(pattern: re.Pattern[bytes], choose: Callable[[list[bytes], bytes,
 
 def _one_of(texts: Sequence[str]) -> Callable[[list[bytes], bytes, np.random.Generator], bytes]:
     """One of some texts, whatever stands there."""
-    return lambda found, old, rng: texts[rng.integers(len(texts))].encode()
+    return lambda found, old, rng: texts[int(rng.integers(len(texts)))].encode()
 
 
 def _scaled(found: list[bytes], old: bytes, rng: np.random.Generator) -> bytes:
