@@ -83,7 +83,7 @@ def _place(parts: Sequence[Any], rng: np.random.Generator) -> int:
 
 
 def _span(parts: Parts, rng: np.random.Generator) -> tuple[int, int]:
-    """Where a part of a file begins and ends: a line; or some hundred bytes, or all from or up to a place."""
+    """Begin and end of a part of a file: a line; or some hundred bytes, or all from or up to a place."""
     begin, most = _place(parts, rng), len(parts)
     if isinstance(parts, list):
         return begin, begin + 1
