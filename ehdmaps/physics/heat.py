@@ -499,6 +499,27 @@ def heat_loading(lubricant: Lubricant, speed: FloatArray, temperature: FloatArra
     return loading
 
 
+def beyond_rule(lubricant: Lubricant, speed: float, temperature: float) -> str:
+    """Remark on films with more heat than any film that told the rule; empty within, where they go on smoothly.
+
+    Parameters
+    ----------
+    lubricant : Lubricant
+        The oil.
+    speed, temperature : float
+        u [m/s], T [K].
+
+    Raises
+    ------
+    InputError
+        Without the conductivity of the oil.
+    """
+    loading = float(heat_loading(lubricant, np.array([speed]), np.array([temperature]))[0])
+    if not loading > LARGEST_LOADING:
+        return ""
+    return f"inlet heat beyond its rule: QL = {loading:.2g}, films with temperatures told it up to {LARGEST_LOADING:g}"
+
+
 LOSS = 2.2
 """Exponent of the loss compliance of heavily loaded lines."""
 

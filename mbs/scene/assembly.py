@@ -28,7 +28,7 @@ from mbs.model.relaxation import Films
 from mbs.model.system import Places, System
 from mbs.model.turning import TurningLoad
 from mbs.scene import kinds
-from mbs.scene.changes import with_clearance
+from mbs.scene.changes import with_clearance, with_supply
 from mbs.scene.contact_laws import NO_LAW, ContactLaws, dry_reason, law_in_force, supply_words, surface_label
 from mbs.scene.gears import mesh_input_problems
 from mbs.scene.kinds import ElementKind
@@ -212,14 +212,14 @@ class Recipe:
         The maps that were given, or read from the film table.
     films : {"slow", "memory"} or None
         Which films were asked for.
-    supply : OilSupply or None
-        Oil supply of all bearings that was asked for.
+    inlet_heat : bool
+        Whether heat in the inlet was asked for.
     """
 
     law: str | None = None
     maps: MapSet | None = None
     films: Films | None = None
-    supply: OilSupply | None = None
+    inlet_heat: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -229,7 +229,7 @@ class Model:
     Attributes
     ----------
     scene : Scene
-        What it was made from, with the clearance in force.
+        What it was made from, with the clearance and the oil supply in force.
     system : System
         What is analysed in time. Its first elements are the bearings, then come the gear meshes.
     law : str
@@ -295,7 +295,7 @@ class Model:
             maps = again_from_table(maps, scene)
         elif maps is not None and scene.lubricant != self.scene.lubricant:
             raise InputError(OTHER_OIL)
-        model = assemble(scene, recipe.law, maps, films=recipe.films, supply=recipe.supply)
+        model = assemble(scene, recipe.law, maps, films=recipe.films, inlet_heat=recipe.inlet_heat)
         return dataclasses.replace(model, chosen=self.chosen)
 
     @property
@@ -412,7 +412,9 @@ def assemble(
             scene = with_clearance(scene, clearance)
         except InputError as error:
             problems += [f"--clearance: {problem}" for problem in error.problems]
-    laws = ContactLaws(chosen, scene, maps, films, supply, inlet_heat)
+    if supply is not None:
+        scene = with_supply(scene, supply)
+    laws = ContactLaws(chosen, scene, maps, films, inlet_heat)
     wrong_law = laws.problems()
     problems = [*wrong_law, *problems]
     try:
@@ -454,7 +456,7 @@ def assemble(
         supplies=laws.supplies,
         surface=laws.surface,
         oils=laws.oils,
-        recipe=Recipe(law if maps is None else chosen, maps, films, supply),
+        recipe=Recipe(law if maps is None else chosen, maps, films, inlet_heat),
     )
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ehdmaps.errors import InputError, Problems
+from ehdmaps.physics.oil_supply import OilSupply
 from mbs.model.drive import DrivenSpeed
 from mbs.model.profiles import Advanced, Constant, Course, SpeedProfile
 from mbs.scene.fields import HERTZ
@@ -35,6 +36,30 @@ def with_slices(scene: Scene, slices: int) -> Scene:
     """The scene with another number of slices of all rollers."""
     changed = scene.with_bearings(dataclasses.replace(entry, slices=slices) for entry in scene.bearings)
     return changed.with_located(lambda entry: entry.sliced(lambda _: slices))
+
+
+def with_supply(scene: Scene, supply: OilSupply) -> Scene:
+    """The scene with another oil supply of all bearings; what single bearings state is outdone by it."""
+    changed = scene.with_bearings(dataclasses.replace(entry, supply=None) for entry in scene.bearings)
+    return dataclasses.replace(changed, supply=supply)
+
+
+def with_layers(scene: Scene, factor: float) -> Scene:
+    """The scene with all its oil layers thicker by a factor; what is flooded stays so.
+
+    Raises
+    ------
+    InputError
+        If a layer is none any more.
+    """
+
+    def scaled(supply: OilSupply | None) -> OilSupply | None:
+        if supply is None or supply.flooded:
+            return supply
+        return dataclasses.replace(supply, oil_layer=factor * supply.oil_layer)
+
+    changed = scene.with_bearings(dataclasses.replace(entry, supply=scaled(entry.supply)) for entry in scene.bearings)
+    return dataclasses.replace(changed, supply=scaled(scene.supply))
 
 
 def with_temperature(scene: Scene, temperature: float) -> Scene:

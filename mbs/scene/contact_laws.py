@@ -328,8 +328,6 @@ class ContactLaws:
         The maps of the law `map`.
     asked : {"slow", "memory"} or None
         Which films linear analyses are to have; None for `DEFAULT_FILMS` of `mbs.model.relaxation`, where they can.
-    asked_supply : OilSupply or None
-        Oil supply of all bearings; None for that of each bearing, of the scene, or of the job of the map.
     inlet_heat : bool
         Whether heat in the inlet thins films of the film table.
     """
@@ -338,7 +336,6 @@ class ContactLaws:
     scene: Scene
     maps: MapSet | None
     asked: Films | None = None
-    asked_supply: OilSupply | None = None
     inlet_heat: bool = False
     _made: dict[tuple[BearingGeometry, OilSupply], BearingLaws] = field(default_factory=dict, repr=False)
 
@@ -400,9 +397,9 @@ class ContactLaws:
         return [] if maps is None else maps.problems(f"bearing {name!r}", geometry)
 
     def supply(self, spec: BearingSpec) -> OilSupply:
-        """The oil supply of a bearing: what was asked for goes before that of the bearing, the scene, and the map."""
+        """The oil supply of a bearing: its own goes before that of the scene, and that of the map."""
         emap = self.map_of(spec.geometry)
-        return self.asked_supply or spec.supply or self.scene.supply or (emap.supply if emap is not None else FLOODED)
+        return spec.supply or self.scene.supply or (emap.supply if emap is not None else FLOODED)
 
     @property
     def supplies(self) -> dict[str, OilSupply]:
@@ -418,7 +415,7 @@ class ContactLaws:
     @property
     def conditions(self) -> FilmConditions:
         """Conditions of the films of bearings that carry axial load."""
-        supply, surface = self.asked_supply or self.scene.supply, self.surface or self.scene.surface
+        supply, surface = self.scene.supply, self.surface or self.scene.surface
         return FilmConditions(self.inlet_heat, supply or FLOODED, surface or SMOOTH)
 
     @property

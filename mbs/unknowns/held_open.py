@@ -10,6 +10,7 @@ temperature            5 K, all together       assumed
 viscosity, of a class  10 %, all together      ISO 3448
 pressure-viscosity     25 % of a correlation,  So and Klaus: 17 % rms, 10 % of it too high; that of a correlation
                        10 % where stated       through a stated value by what other correlations have
+oil layer              half to twice           what brings oil back to a track is not known better
 inner geometry         what an estimate states `mbs.unknowns.geometry`
 profile of rollers     iso, or straight        assumed
 preload of springs     20 %                    assumed; loads with "preload" in their name, and axial offsets
@@ -30,7 +31,7 @@ from collections.abc import Callable, Iterator
 from ehdmaps.errors import InputError
 from ehdmaps.physics.designations.clearance import STATED, clearance_range
 from ehdmaps.physics.lubricant import Lubricant
-from mbs.scene.changes import warmed, with_bearing, with_clearance_of, with_loads
+from mbs.scene.changes import warmed, with_bearing, with_clearance_of, with_layers, with_loads
 from mbs.scene.fields import DEGREE, MICROMETRE
 from mbs.scene.scene import Scene
 from mbs.scene.specs import BearingSpec, LocatingSpec
@@ -43,6 +44,9 @@ LOOSER, WARMER = 5e-6, 5.0
 
 CLASS, ESTIMATED_ALPHA, STATED_ALPHA, PRELOAD = 0.10, 0.25, 0.10, 0.20
 """Half-widths of the viscosity of a class, of alpha by a correlation and as stated, and of a preload, as parts."""
+
+LAYER = 2.0
+"""Factor by which an oil layer may be thicker or thinner."""
 
 CAGES = 8
 """Machines with cages at other angles."""
@@ -65,6 +69,7 @@ def held_open(scene: Scene) -> tuple[Unknown, ...]:
         *_clearances(scene),
         *_temperature(scene),
         *oil,
+        *_layers(scene),
         *geometries(scene),
         *profiles(scene),
         *_preload(scene),
@@ -144,6 +149,20 @@ def _alpha(scene: Scene, oil: Lubricant) -> Iterator[Unknown]:
         return
     looks = (dataclasses.replace(scene, lubricant=changed),)
     yield Unknown("pressure-viscosity", "pressure_viscosity", f"+-{100.0 * part:.3g} %", why, looks, True)
+
+
+def _layers(scene: Scene) -> Iterator[Unknown]:
+    """The oil layers of all bearings together, where there are some."""
+    found = [scene.supply, *(getattr(entry, "supply", None) for entry in scene.of_all_kinds)]
+    layers = dict.fromkeys(1e6 * one.oil_layer for one in found if one is not None and not one.flooded)
+    stated = tolerance_of(scene, "oil_layer")
+    if not layers or (stated is not None and stated.exact):
+        return
+    least, most = (1.0 / LAYER, LAYER) if stated is None else (1.0 - stated.size, 1.0 + stated.size)
+    why = "known to a factor of two at best" if stated is None else _AS_STATED
+    held = ", ".join(f"{least * layer:.3g} to {most * layer:.3g} um" for layer in layers)
+    looks, one = looks_of([_at(with_layers, scene, factor) for factor in (least, most)])
+    yield Unknown("oil layer", "oil_layer", held, why, looks, one)
 
 
 def _preload(scene: Scene) -> Iterator[Unknown]:

@@ -63,6 +63,7 @@ TOLERATED: Mapping[str, Tolerated] = {
         Tolerated("temperature", "K", 50.0, False, Display("K"), "2 K"),
         Tolerated("viscosity", "", 0.0, True, Display("%", 100.0), "5 %"),
         Tolerated("pressure_viscosity", "", 0.0, True, Display("%", 100.0), "10 %"),
+        Tolerated("oil_layer", "", 0.0, True, Display("%", 100.0), "20 %"),
         Tolerated(
             "geometry", "", 0.0, True, Display("%", 100.0), "0 %: as drawn, or 50 % of the errors of an estimate"
         ),

@@ -8,10 +8,10 @@ from mbs.scene.scene import Scene
 from mbs.unknowns.held_open import held_open
 from mbs.unknowns.unknown import Unknown
 
-_FIRST, _SECOND = ("clearance",), ("temperature", "viscosity", "pressure_viscosity", "load")
+_FIRST, _SECOND = ("clearance",), ("temperature", "viscosity", "pressure_viscosity", "oil_layer", "load")
 """Groups of the first two lines of a head; the third has the others."""
 
-NOT_IN_IT = "oil supply, damping of seats and joints, loads, and masses and bodies of the scene"
+NOT_IN_IT = "whether contacts are flooded, damping of seats and joints, loads, and masses and bodies of the scene"
 """Unknowns that no band holds, of any machine."""
 
 BALL_CAGE = "the cage hypothesis of balls"

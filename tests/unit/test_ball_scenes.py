@@ -230,3 +230,13 @@ force = ["0 N", "-1 kN", "0 N"]
     loads = machine.balls[0].loads(place, machine.operation)
     assert np.all(loads.load[0] > 0.0) and loads.loaded < loads.angle.size
     assert f"  {loads.loaded} of {loads.angle.size} balls loaded" in "\n".join(located_lines(machine, rest))
+
+
+def test_heat_beyond_its_rule_is_said_and_kept_by_changed_machines():
+    """Films of QL above 3 say so; a model that is made again of a changed scene keeps heat and supply."""
+    model = assemble(read_scene("spindle"), "table", supply=OilSupply(2e-6), inlet_heat=True)
+    again = model.again(model.scene)
+    for one in (model, again):
+        assert all(ball.films.conditions.words == "inlet heat, oil layer 2 um" for ball in one.balls)
+    films = model.balls[0].films
+    assert "QL" not in films.note(10.0, 0.0) and films.note(5000.0, 0.0).startswith("inlet heat beyond its rule: QL = ")

@@ -19,6 +19,7 @@ from mbs.bearings.films import MapFilms
 from mbs.commands.cases import read_compared
 from mbs.output.state_text import FLOODED_NOTE, flooded_note
 from mbs.scene.assembly import law_attributes
+from mbs.scene.changes import with_supply
 from mbs.scene.choices import VARIED, LawChoice, Subject
 from mbs.scene.contact_laws import ContactLaws, supply_words
 from mbs.scene.map_set import MapSet
@@ -61,7 +62,7 @@ def test_what_is_asked_goes_before_bearing_scene_and_map(emaps):
         (scene('lubrication = "oil air"', own), stated, None, LAYER, AIR),
         (scene('lubrication = "oil air"', own), stated, FLOODED, FLOODED, FLOODED),
     ):
-        laws = ContactLaws("map", given, MapSet([emap]), asked_supply=asked)
+        laws = ContactLaws("map", given if asked is None else with_supply(given, asked), MapSet([emap]))
         assert laws.supplies == {"bearing_left": first, "bearing_right": second}
 
 
@@ -99,7 +100,7 @@ def test_a_supply_is_said_with_the_law(emaps):
             "formula map, supply by bearing",
         ),
     ):
-        laws = ContactLaws("map", given, MapSet([plain]), asked_supply=asked)
+        laws = ContactLaws("map", given if asked is None else with_supply(given, asked), MapSet([plain]))
         assert (laws.words, laws.label) == (law, label)
     dry = assemble(scene('lubrication = "grease"'), "hertz")
     assert (dry.law, dry.label, dry.supplies) == ("dry Hertz, ISO 16281", "dry Hertz", {})

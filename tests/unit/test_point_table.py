@@ -184,7 +184,7 @@ def test_law_is_the_table(table):
         (lambda: law(1e-6, 0.0, 500.0, WARM), OutsideMapError, "L outside"),
         (lambda: law(math.nan, 0.0, 1.0, WARM), InputError, "no finite number"),
         (lambda: ehdmaps.law("6208", "FVA3", kind="line"), InputError, "allowed: series, inner, outer"),
-        (lambda: ehdmaps.law("6208", "FVA3", supply=1), InputError, "got a supply, a surface or a solver"),
+        (lambda: ehdmaps.law("6208", "FVA3", solver=1), InputError, "got a solver; allowed: none, films are read"),
     ):
         with pytest.raises(error, match=words):
             wrong()

@@ -80,6 +80,20 @@ def test_each_unknown_has_the_machines_at_its_ends():
     assert np.array(lengths) / base.bearings[0].geometry.roller_length == pytest.approx([1.2, 0.8])
 
 
+def test_oil_layers_are_known_to_a_factor_of_two():
+    """All layers together, those of single bearings too; flooded is held, and says nothing."""
+    found = opened('[supply]\nlubrication = "oil air"', 'supply = { oil_layer = "5 um" }')["oil layer"]
+    assert found.held == "1 to 4 um, 2.5 to 10 um"
+    layers = [(look.supply.oil_layer, look.bearings[0].supply.oil_layer) for look in found.looks]
+    np.testing.assert_allclose(layers, [(1e-6, 2.5e-6), (4e-6, 10e-6)], rtol=1e-12)
+    assert "oil layer" not in opened('[supply]\nlubrication = "flooded"')
+    base = scene('[supply]\nlubrication = "oil air"')
+    (held,) = [
+        one.held for one in held_open(known(base, read_statements("oil_layer = +- 10 %"))) if "layer" in one.name
+    ]
+    assert held == "1.8 to 2.2 um"
+
+
 def test_frozen_cages_spread_over_a_pitch_each():
     cages = opened()["cage angle"]
     assert cages.frozen_cage and len(cages.looks) == CAGES
@@ -120,7 +134,7 @@ def test_statements_are_nearest_first():
 
 
 UNITS = {"clearance": "um", "temperature": "K", "cage_angle": "deg"} | dict.fromkeys(
-    ("viscosity", "pressure_viscosity", "geometry", "preload", "load", "profile"), "%"
+    ("viscosity", "pressure_viscosity", "oil_layer", "geometry", "preload", "load", "profile"), "%"
 )
 
 

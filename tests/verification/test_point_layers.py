@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import ehdmaps
 from ehdmaps.maps.points.layers import DAMPING, OFFSET
 from ehdmaps.maps.points.rough import SHARES, load_shares, shared_films
 from ehdmaps.maps.rough_layer import asperity_pressure, mean_gap
@@ -142,3 +143,22 @@ def test_heat_goes_before_the_layer():
     cold, hot = (films(dataclasses.replace(one, supply=layer)).inner.read(LOADS)[0] for one in (PLAIN, warm))
     np.testing.assert_allclose(hot[1], cold[1], rtol=1e-3)
     assert np.all(films(warm).inner.read(LOADS)[0][1] < films(PLAIN).inner.read(LOADS)[0][1])
+
+
+def test_laws_of_balls_have_the_same_conditions():
+    """`ehdmaps.law`: heat, supply and surfaces as the films of bearings have them; k and c at equal load within 1 %.
+
+    That bounds cubics over other loads, and steps of the ball law's table.
+    """
+    given = FilmConditions(True, OilSupply(0.5e-6), Surface(0.2e-6))
+    law = ehdmaps.law("6208", OIL, "inner", supply=given.supply, surface=given.surface, inlet_heat=True)
+    at, contact = law.at(*AT), GEOMETRY.contacts(STEEL)[0]
+    (values, slopes), loads = films(given).inner.read(LOADS), LOADS
+    approach, compliance, loss = at.static(loads)
+    np.testing.assert_allclose(approach, contact.approach(loads) - values[OFFSET], rtol=1e-3, atol=2e-9)
+    dry = 1.0 / np.asarray(contact.stiffness(loads))
+    np.testing.assert_allclose(compliance, dry - slopes[OFFSET] / loads, rtol=1e-2)
+    np.testing.assert_allclose(loss / compliance**2, values[DAMPING], rtol=3e-2)
+    load, by_delta, _ = law(approach, 0.0, *AT)
+    np.testing.assert_allclose(load, loads, rtol=1e-9)
+    np.testing.assert_allclose(by_delta * compliance, 1.0, rtol=1e-6)

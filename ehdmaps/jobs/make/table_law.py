@@ -26,7 +26,7 @@ from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.designations.reader import BALLS, plain_name
 from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, heat_data
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.oil_supply import FLOODED, OilSupply
+from ehdmaps.physics.oil_supply import FLOODED, FilmConditions, OilSupply
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.solids import STEEL, Material
@@ -37,7 +37,7 @@ from ehdmaps.table.solver import TableSolver
 if TYPE_CHECKING:
     import xarray as xr
 
-    from ehdmaps.table.points.law import PointLaw
+    from ehdmaps.maps.points.law import PointLaw
 
 LOADS, SPEEDS, TEMPERATURES = (100.0, 1e6), (0.05, 10.0), (293.15, 393.15)
 """Ranges of a law for which nothing else is said: those of the shipped jobs [N/m], [m/s], [K]."""
@@ -239,11 +239,13 @@ def law(
     structural_law: StructuralLaw = "iso16281",
     material: Material = STEEL,
     solver: ContactSolver | None = None,
+    inlet_heat: bool = False,
 ) -> ContactLaw | PointLaw:
     """Make a contact law without a map, in about a second; the same one again in a millisecond.
 
     Films come from the film table; where it does not serve, all are solved. The law of a ball bearing has the load of
-    one ball [N], and reads the film table of points alone: of what follows it takes kind and material.
+    one ball [N], and reads the film table of points alone: of what follows it takes kind, material, supply, surface and
+    heat.
 
     Parameters
     ----------
@@ -266,11 +268,13 @@ def law(
         Material of a bearing.
     solver : ContactSolver, optional
         What gives the films; the table if left out.
+    inlet_heat : bool
+        Whether heat in the inlet thins the films of the table, by its rule (`ehdmaps.physics.heat`).
 
     Raises
     ------
     InputError
-        For a kind that there is not, and for ranges that no map could have.
+        For a kind that there is not, for ranges that no map could have, and for heat of an oil without conductivity.
     MapError
         If films are missing that the law needs.
 
@@ -283,11 +287,12 @@ def law(
         of = ball_estimate(of) if plain_name(of, BALLS) else designated(of)
     lubricant = Lubricant.named(lubricant) if isinstance(lubricant, str) else lubricant
     if isinstance(of, BallGeometry):
-        if supply is not None or surface is not None or solver is not None:
-            raise InputError("contact law of a ball: got a supply, a surface or a solver; allowed: none of them")
-        from ehdmaps.table.points.law import PointLaw
+        if solver is not None:
+            raise InputError("contact law of a ball: got a solver; allowed: none, films are read from the table")
+        from ehdmaps.maps.points.law import PointLaw
 
-        return PointLaw(of, lubricant, "series" if kind is None else kind, material)
+        conditions = FilmConditions(inlet_heat, supply or FLOODED, surface or SMOOTH)
+        return PointLaw(of, lubricant, "series" if kind is None else kind, material, conditions)
     allowed: tuple[LawKind, ...] = ("series", "inner", "outer") if isinstance(of, BearingGeometry) else ("line",)
     chosen = kind or allowed[0]
     if chosen not in allowed:
@@ -301,5 +306,6 @@ def law(
         structural_law=structural_law,
         material=material,
         solver=solver,
+        inlet_heat=inlet_heat,
     )
     return emap.law(chosen, outside, supply=supply, surface=surface)

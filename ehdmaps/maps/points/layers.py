@@ -7,7 +7,6 @@ is that of the flooded contact; of the film between asperities the loss complian
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -22,11 +21,14 @@ from ehdmaps.physics.point.oil_layer import Layered, layered
 from ehdmaps.physics.surface import Surface
 
 PER_DECADE = 40
+"""Loads in a decade."""
 
 _LEAST_SHARE = 1e-3
 
+LAYERED = ("film_offset", "central_film", "minimum_film", "damping")
+"""Numbers of a film that layers change, in their order [m], [m], [m], [N s/m]."""
+
 OFFSET, CENTRAL, SMALLEST, DAMPING = range(4)
-"""Numbers of a film in their order: film offset, central and smallest film [m], damping [N s/m]."""
 
 
 class PointPlace(NamedTuple):
@@ -56,7 +58,7 @@ class LayeredFilms(NamedTuple):
     loads : ndarray, shape (n,)
         F [N], rising.
     values : ndarray, shape (n, 4)
-        See `OFFSET`; the offset may be below zero between rough surfaces, where it is the distance of the mean planes.
+        Those of `LAYERED`; between rough surfaces the offset is the distance of the mean planes, of either sign.
     share : ndarray, shape (n,)
         Share of the film in the load; 1 between smooth surfaces.
     """
@@ -64,6 +66,17 @@ class LayeredFilms(NamedTuple):
     loads: FloatArray
     values: FloatArray
     share: FloatArray
+
+
+def fine_loads(lowest: float, highest: float) -> FloatArray:
+    """Loads between two [N], so near to each other that slopes by cubics through them are those of the films.
+
+    Parameters
+    ----------
+    lowest, highest : float
+        [N], > 0.
+    """
+    return np.geomspace(lowest, highest, max(8, round(PER_DECADE * np.log10(highest / lowest))))
 
 
 def on_layer(place: PointPlace, supply: OilSupply, load: FloatArray, values: FloatArray) -> Layered:
@@ -89,8 +102,8 @@ def on_layer(place: PointPlace, supply: OilSupply, load: FloatArray, values: Flo
 def layered_films(
     place: PointPlace,
     conditions: FilmConditions,
-    ends: tuple[float, float],
-    read: Callable[[FloatArray], FloatArray],
+    loads: FloatArray,
+    values: FloatArray,
 ) -> LayeredFilms:
     """Films under conditions, from flooded ones of smooth surfaces.
 
@@ -100,13 +113,11 @@ def layered_films(
         The contact.
     conditions : FilmConditions
         Oil supply and surfaces; heat is in the films already.
-    ends : (float, float)
-        Lowest and highest load [N].
-    read : callable
-        Loads (n,) to flooded films (n, 4).
+    loads : ndarray, shape (n,)
+        Loads, rising and near to each other, see `fine_loads` [N].
+    values : ndarray, shape (n, 4)
+        Flooded films there.
     """
-    loads = np.geomspace(*ends, max(8, round(PER_DECADE * np.log10(ends[1] / ends[0]))))
-    values = read(loads)
     if not conditions.supply.flooded:
         at = on_layer(place, conditions.supply, loads, values)
         values = values * np.column_stack([at.offset, at.film, at.film, np.ones(loads.size)])

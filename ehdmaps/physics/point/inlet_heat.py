@@ -18,7 +18,14 @@ from typing import Any
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.physics.heat import LARGEST_LOADING, InletHeat, heat_by_factor, heat_loading, inlet_heat_factor
+from ehdmaps.physics.heat import (
+    LARGEST_LOADING,
+    InletHeat,
+    beyond_rule,
+    heat_by_factor,
+    heat_loading,
+    inlet_heat_factor,
+)
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ellipse import Ellipse
 
@@ -111,7 +118,9 @@ def heat_note(ellipse: Ellipse, lubricant: Lubricant, load: float, speed: float,
     """
     if not (load > 0.0 and speed > 0.0):
         return ""
-    return point_heats(ellipse, lubricant, *(np.array([x]) for x in (load, speed, temperature))).of(0).note
+    at = [np.array([x]) for x in (load, speed, temperature)]
+    beyond = beyond_rule(lubricant, speed, temperature)
+    return "; ".join(filter(None, (point_heats(ellipse, lubricant, *at).of(0).note, beyond)))
 
 
 WARM = (

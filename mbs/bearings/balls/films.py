@@ -123,10 +123,10 @@ class ContactFilms:
         conditions : FilmConditions
             Oil supply and surfaces.
         """
-        from ehdmaps.maps.points.layers import layered_films, on_layer  # with what only layers need
+        from ehdmaps.maps.points.layers import fine_loads, layered_films, on_layer  # with what only layers need
 
-        ends = float(self.loads[0]), float(self.loads[-1])
-        found = layered_films(place, conditions, ends, lambda load: self.read(load)[0].T)
+        loads = fine_loads(float(self.loads[0]), float(self.loads[-1]))
+        found = layered_films(place, conditions, loads, self.read(loads)[0].T)
         errors, response = self.errors, self.response
         if not conditions.supply.flooded:
             more = on_layer(place, conditions.supply, self.loads, self.values).errors

@@ -21,7 +21,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, EhdmapsError
 from ehdmaps.units import RPM
 from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers, check_apart
-from mbs.model.findings import Gauge
+from mbs.model.findings import Cause, Finding, Gauge
 from mbs.model.relaxation import Films, Relaxation
 
 if TYPE_CHECKING:
@@ -354,8 +354,12 @@ class LocatingElement(OnRings):
         return self.condensed_at(self.settled(displacement, operation)) if self.varies else None
 
     def gauge(self, displacement: FloatArray, operation: Operation) -> Gauge:
-        """See `OnRings.gauge`."""
-        return self.gauge_at(self.settled(displacement, operation))
+        """See `OnRings.gauge`; with what is to be known of the films."""
+        found = self.gauge_at(self.settled(displacement, operation))
+        speed = abs(operation.speed)
+        note = getattr(self.films, "note", None)  # films of one's own may have none
+        words = note(self.inner_spin * speed, self.outer_spin * speed) if note is not None else ""
+        return found._replace(own=(*found.own, Finding(Cause.FILM, words))) if words else found
 
     def felt(self, displacement: FloatArray, operation: Operation) -> tuple[BearingContacts, RollingLoss]:
         """See `OnRings.felt`."""

@@ -39,9 +39,10 @@ def scene_of(spec: BearingSpec | LocatingSpec, oil: Lubricant, told: Description
     oil : Lubricant
         Oil of the bearing.
     told : Description
-        Temperature of its raceways, and how well its numbers are known.
+        Temperature of its raceways, oil supply, and how well its numbers are known.
     """
-    scene = Scene(name=NAME, speed=0.0, temperature=told.temperature, lubricant=oil, bodies=(), elements=(spec,))
+    at = {"temperature": told.temperature, "lubricant": oil, "supply": told.supply}
+    scene = Scene(name=NAME, speed=0.0, bodies=(), elements=(spec,), **at)
     # values are in force already
     return known(scene, tuple(dataclasses.replace(one, value=None) for one in told.known))
 

@@ -11,6 +11,7 @@ from typing import Any
 
 from ehdmaps.errors import AnalysisError, InputError, SolverError
 from ehdmaps.outputs import FIGURE, Output, output_problems
+from ehdmaps.physics.heat import beyond_rule
 from ehdmaps.physics.lubricant import DEFAULT_OIL
 from ehdmaps.physics.oil_supply import FLOODED, FilmConditions
 from ehdmaps.physics.surface import SMOOTH
@@ -174,7 +175,11 @@ def _point(request: Request, load: tuple[float, ...], speed: float, at: AtSpeed)
         temperature=description.temperature,
         films=at.films,
     )
-    told = [Finding(Cause.REACH, words) for words in at.problems] + [Finding(Cause.FILM, words) for words in at.notes]
+    notes = list(at.notes)
+    if request.conditions.inlet_heat:
+        u = abs(request.asked.geometry.entrainment_speed(speed, request.operating.outer_speed))
+        notes += filter(None, [beyond_rule(request.oil, u, description.temperature)])
+    told = [Finding(Cause.REACH, words) for words in at.problems] + [Finding(Cause.FILM, words) for words in notes]
     return dataclasses.replace(point, findings=(*point.findings, *told))
 
 
@@ -214,13 +219,14 @@ def _changed(request: Request, scene: Scene) -> Request:
     """The same request of a scene that is a little different; a map from a file stays what it is."""
     (spec,) = scene.of_all_kinds
     options = {name: getattr(spec, name) for name in request.asked.options}
-    oil, kelvin = scene.lubricant or request.oil, scene.temperature
+    oil, kelvin, supply = scene.lubricant or request.oil, scene.temperature, scene.supply or FLOODED
     changed = dataclasses.replace(
         request,
         asked=request.asked._replace(geometry=spec.geometry, options=options),
         oil=oil,
+        conditions=dataclasses.replace(request.conditions, supply=supply),
         operating=request.operating._replace(way=turned(request.operating.way, spec.start_angle)),
-        description=dataclasses.replace(request.description, oil=oil, temperature=kelvin),
+        description=dataclasses.replace(request.description, oil=oil, temperature=kelvin, supply=supply),
         trial=True,
     )
     return request.family.finished(changed)

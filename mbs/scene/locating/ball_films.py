@@ -11,6 +11,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.heat import beyond_rule
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import PLAIN, FilmConditions
 from ehdmaps.physics.point.ball_geometry import BallGeometry
@@ -69,6 +70,12 @@ class FilmsOfPoints:
     def __call__(self, inner_speed: float, outer_speed: float) -> BallLaw:
         """Laws at speeds of the inner and the outer ring [rad/s]."""
         return _film_law(self, self.geometry.entrainment_speed(inner_speed, outer_speed))
+
+    def note(self, inner_speed: float, outer_speed: float) -> str:
+        """Remark on the films at speeds of the rings [rad/s]; empty where there is nothing to say."""
+        if not self.conditions.inlet_heat:
+            return ""
+        return beyond_rule(self.oil, self.geometry.entrainment_speed(inner_speed, outer_speed), self.temperature)
 
     source = "the film table of points"
     error_words = "errors of the film table of points"

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.heat import beyond_rule
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import PLAIN, FilmConditions
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
@@ -70,6 +71,13 @@ class FilmsOfLines:
         """Laws at speeds of the inner and the outer ring [rad/s]."""
         u = abs(self.geometry.entrainment_speed(inner_speed, outer_speed))
         return _films_at(cylinder_of(self.geometry), self.films, u)
+
+    def note(self, inner_speed: float, outer_speed: float) -> str:
+        """Remark on the films at speeds of the rings [rad/s]; empty where there is nothing to say."""
+        if not self.films.conditions.inlet_heat or self.films.law == "formula":
+            return ""
+        u = abs(self.geometry.entrainment_speed(inner_speed, outer_speed))
+        return beyond_rule(self.films.oil, u, self.temperature)
 
     @property
     def lines(self) -> FilmSource:

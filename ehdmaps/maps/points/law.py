@@ -4,14 +4,15 @@ At one speed and temperature the table gives the film offset h and damping c ove
 
     approach = Hertz(F) - h(F),    load = F(approach) + c(F) rate,
 
-never a tension. Between the loads that are read, h and c/k^2 are cubics in the logarithms; below the lightest and above
-the heaviest one they go on straight. `series` is a ball between both raceways in line, without mass: approaches add,
+never a tension. Between the loads that are read, h and c/k^2 are cubics in the logarithms (between rough surfaces h is
+one itself, as the distance of the mean planes may be below zero); below the lightest and above the heaviest one they go
+on straight. `series` is a ball between both raceways in line, without mass: approaches add,
 and so do 1/k and c/k^2.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -21,8 +22,10 @@ from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, MapError, OutsideMapError
+from ehdmaps.physics.heat import heat_data
 from ehdmaps.physics.hertz import POINT_LIMIT
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import PLAIN, FilmConditions
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.solids import STEEL, Material
@@ -57,12 +60,16 @@ class PointLawAt:
     contacts: tuple[Ellipse, ...]
 
     def __post_init__(self) -> None:
-        places = np.log(self.loads)
+        places, offsets = np.log(self.loads), [film.film_offset for film in self.films]
+        logs = all(bool(np.all(offset > 0.0)) for offset in offsets)
         curves = [
-            CubicSpline(places, np.log(np.column_stack([film.film_offset, film.loss_compliance])), axis=0)
-            for film in self.films
+            CubicSpline(
+                places, np.column_stack([np.log(offset) if logs else offset, np.log(film.loss_compliance)]), axis=0
+            )
+            for offset, film in zip(offsets, self.films, strict=True)
         ]
         object.__setattr__(self, "_curves", curves)
+        object.__setattr__(self, "_logs", logs)
         object.__setattr__(self, "_approaches", self.static(self.loads)[0])
 
     def static(self, load: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -78,11 +85,12 @@ class PointLawAt:
         approach, compliance, loss = (np.zeros(load.size) for _ in range(3))
         for contact, curve in zip(self.contacts, self._curves, strict=True):  # type: ignore[attr-defined]
             slopes = curve(inside, 1)
-            logs = curve(inside) + slopes * (places - inside)[:, None]
-            offset = np.exp(logs[:, 0])
+            values = curve(inside) + slopes * (places - inside)[:, None]
+            offset = np.exp(values[:, 0]) if self._logs else values[:, 0]  # type: ignore[attr-defined]
+            by_log = slopes[:, 0] * offset if self._logs else slopes[:, 0]  # type: ignore[attr-defined]
             approach += contact.approach(load) - offset
-            compliance += 1.0 / np.asarray(contact.stiffness(load)) - slopes[:, 0] * offset / load
-            loss += np.exp(logs[:, 1])
+            compliance += 1.0 / np.asarray(contact.stiffness(load)) - by_log / load
+            loss += np.exp(values[:, 1])
         return approach, compliance, loss
 
     def __call__(self, delta: npt.ArrayLike, rate: npt.ArrayLike) -> tuple[Any, Any, Any]:
@@ -167,20 +175,29 @@ class PointLaw:
         Contact, or the ball between both.
     material : Material
         Material of balls and rings.
+    conditions : FilmConditions
+        Heat in the inlet, oil supply and surfaces.
 
     Raises
     ------
     InputError
-        For another kind.
+        For another kind, and for heat of an oil whose conductivity is not known.
     """
 
     def __init__(
-        self, geometry: BallGeometry, lubricant: Lubricant, kind: str = "series", material: Material = STEEL
+        self,
+        geometry: BallGeometry,
+        lubricant: Lubricant,
+        kind: str = "series",
+        material: Material = STEEL,
+        conditions: FilmConditions = PLAIN,
     ) -> None:
         if kind not in KINDS:
             raise InputError(f"contact law of a ball, kind: got {kind!r:.40}; allowed: {', '.join(KINDS)}")
         inner, outer = geometry.contacts(material)
-        self.geometry, self.lubricant, self.kind = geometry, lubricant, kind
+        if conditions.inlet_heat:
+            heat_data(lubricant, material)
+        self.geometry, self.lubricant, self.kind, self.conditions = geometry, lubricant, kind, conditions
         self.contacts: tuple[Ellipse, ...] = {"series": (inner, outer), "inner": (inner,), "outer": (outer,)}[kind]
         self.at = lru_cache(maxsize=_KEPT)(self._at)
 
@@ -202,8 +219,9 @@ class PointLaw:
         if entrainment_speed == 0.0:
             return DryLawAt(self.contacts)
         heaviest = min(float((POINT_LIMIT / contact.max_pressure(1.0)) ** 3) for contact in self.contacts)
-        loads, table = np.geomspace(LIGHTEST, heaviest, _LOADS), shipped_point_table()
-        read = [table.films(one, self.lubricant, loads, entrainment_speed, temperature) for one in self.contacts]
+        loads, heat = np.geomspace(LIGHTEST, heaviest, _LOADS), self.conditions.inlet_heat
+        films_at, at = shipped_point_table().films, (entrainment_speed, temperature, heat)
+        read = [films_at(one, self.lubricant, loads, *at) for one in self.contacts]
         usable = np.all([film.usable & (film.film_offset > 0.0) for film in read], axis=0)
         first = _LOADS - int(np.argmin(np.r_[usable[::-1], False]))  # of those without a gap up to the heaviest
         if _LOADS - first < _LOADS // 4:
@@ -212,11 +230,41 @@ class PointLaw:
                 f"contact law of a ball: {entrainment_speed:.4g} m/s, {temperature:.5g} K: {'; '.join(sorted(reasons))}"
             )
         kept = loads[first:]
-        films = tuple(table.films(one, self.lubricant, kept, entrainment_speed, temperature) for one in self.contacts)
+        films = tuple(self._under(one, kept, films_at(one, self.lubricant, kept, *at), at) for one in self.contacts)
         found = PointLawAt(kept, films, self.contacts)
         if not np.all(np.diff(found.static(kept)[0]) > 0.0):
             raise MapError("contact law of a ball: the approach falls with the load; take another speed or temperature")
         return found
+
+    def _under(
+        self, contact: Ellipse, loads: FloatArray, films: PointFilms, at: tuple[float, float, bool]
+    ) -> PointFilms:
+        """Films with what oil supply and surfaces make of offset, damping and films; their errors are added."""
+        if self.conditions.plain:
+            return films
+        from ehdmaps.maps.points.layers import LAYERED, OFFSET, PointPlace, layered_films, on_layer
+
+        place = PointPlace(contact, self.lubricant, *at[:2])
+        flooded = np.column_stack([getattr(films, name) for name in LAYERED])
+        found = layered_films(place, self.conditions, loads, flooded)
+        changed = dict(zip(LAYERED, found.values.T, strict=True))
+        slope = CubicSpline(np.log(loads), changed["film_offset"])(np.log(loads), 1) / loads
+        dry = 1.0 / np.asarray(contact.stiffness(loads))
+        errors = dict(films.errors)
+        if not self.conditions.supply.flooded:
+            for name, more in zip(
+                LAYERED, on_layer(place, self.conditions.supply, loads, flooded).errors.T, strict=True
+            ):
+                errors[name] = errors[name] + more
+        return replace(
+            films,
+            **changed,
+            approach=films.approach + flooded[:, OFFSET] - changed["film_offset"],
+            stiffness=1.0 / (dry - slope),
+            film_compliance=-slope,
+            loss_compliance=changed["damping"] * (dry - slope) ** 2,
+            errors=errors,
+        )
 
     def __call__(
         self,
