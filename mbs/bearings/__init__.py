@@ -1,29 +1,35 @@
-"""Rolling bearings: geometry, contact laws, the force with its derivatives, elements, compiled runs, in this order.
+"""Rolling bearings, in the order of their data: geometry, laws, force, element, compiled runs, what is told of them.
 
-=====================  ================================================================================================
-`bearing`              geometry, clearance, profile, slices; spins, relative pose, forces and moments on both rings
-`thermal`              fits and the clearance that they leave, the state in operation, the balance of heat
-`laws`                 contact laws of rollers: Hertz, constant, points, film formula; their data for C
-`films`                pressure, films and rolling force at a load: dry, by formula, by map
-`speed_tables`         tables of a law over the speed of a run
-`cylinder`             structs and functions of a cylindrical bearing in C; a law at one speed as a table
-`force_at_point`       the force at one speed, temperature and centrifugal load; loads of the rollers
-`bearing_force`        the force element, with films at once or in time
-`contact_energy`       energy of its contacts, what changes of the speed bring in, the moment on its cage
-`roller_spin`          how fast rollers turn in the clearance of their pockets
-`roller_contacts`      rollers as bodies between two contacts
-`bearing_element`      a bearing in a system, with massless rollers
-`roller_element`       the same with rollers as bodies
-`memory_element`       both with films that need time
-`locating`             the same of bearings that carry axial load: laws, force, element, compiled runs
-`balls`                their kinds: balls with two contact angles each, which set their speed
-`tapered`              and tapered rollers, or rollers between ribs, in slices between cup, cone and rib
-`slices_in_balance`    small motions: films with memory in linear analyses, errors of the law
-`contact_report`       what the contacts feel in an equilibrium, what rolling costs, which limits are passed
-`rings`                bearings of a run as arrays, and as C takes them: rings, rollers, contacts with one side or two
-`bearing_block`        compiled runs with slow films or dry contacts
-`memory_block`         compiled runs with films that have a memory
-=====================  ================================================================================================
+A bearing has Z rolling elements with J contacts each. A kind says how a ring moves an element, which freedoms the
+element has of its own, how it comes into balance (in C, `ehdmaps.kernel`), and by which law its contacts carry. Kinds
+are columns here. Cylindrical rollers and needles stand in this folder, balls in `balls`, tapered rollers and rollers
+between ribs in `tapered`; what the last two share is in `locating`.
+
+===================  =======================  ========================  ======================  ======================
+what                 cylindrical, needles     balls                     tapered, ribbed         balls and ribbed alike
+===================  =======================  ========================  ======================  ======================
+moved by the ring    1: radial                2: axial, radial          3: and tilt             `locating_force`
+its own freedoms     none, or 1 as a body     2                         3
+geometry             `bearing`, `thermal`     `ball_data`               `kernel_structs`
+law of a contact     `laws`                   `laws`                    `line_film`             `normal_law`
+its films            `films`                  `films`, `response`       `line_film`
+force                `force_at_point`,        `ball_bearing`            `tapered_bearing`       `locating_force`
+                     `bearing_force`
+as bodies            `roller_contacts`
+speeds, energy       `roller_spin`,           `ball_speed`,             `tapered_bearing`
+                     `contact_energy`         `ball_motion`
+element              `bearing_element`,       `ball_element`            `tapered_element`       `locating_element`
+                     `roller_element`
+films with memory    `memory_element`         `ball_memory`             `tapered_memory`
+small motions        `slices_in_balance`      `balls_in_balance`        `rollers_in_balance`
+laws over speed      `speed_tables`           as ribbed                 as balls                `film_tables`
+compiled runs        `cylinder`, `rings`,     `ball_block`              `tapered_block`         `locating_block`
+                     `bearing_block`,
+                     `memory_block`
+findings             `bearing_element`        `ball_findings`           `roller_findings`
+what contacts feel   `contact_report`         `ball_report`             `roller_report`
+one at a point       `contact_report`         `ball_point`              `tapered_point`         `locating_point`
+===================  =======================  ========================  ======================  ======================
 
 A contact of a roller has one side, where both contacts in series stand for a massless roller, or two, the inner and the
 outer one of a roller that is a body. Elements name the law of each side (`RingElement.flat_laws`), states of films are

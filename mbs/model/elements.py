@@ -291,7 +291,7 @@ class OnRings(ElementDefaults):
 
     @property
     def relaxes(self) -> bool:
-        """Whether its films have a memory."""
+        """Sign of films with memory."""
         return False
 
     @property

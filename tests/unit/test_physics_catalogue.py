@@ -1,6 +1,8 @@
 """Estimated inner geometry: against known bearings, its stated errors, and that it is never taken for known."""
 
+import cmath
 import json
+import math
 import re
 
 import pytest
@@ -10,7 +12,9 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs.cli import main
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.physics.bearing import BearingGeometry
-from ehdmaps.physics.catalogue import designations, estimate, estimate_from_dimensions
+from ehdmaps.physics.catalogue import boundary, designations, estimate, estimate_from_dimensions
+from ehdmaps.physics.rollers.ratings import cylindrical_ratings
+from ehdmaps.physics.rollers.ribbed_geometry import ribbed_way
 from mbs import Bearing
 
 from .test_job_reader import GOOD, NAMED
@@ -94,6 +98,27 @@ def test_the_table_has_the_boundary_dimensions_of_iso_15():
     assert sizes["3", "08"] == (40, 90, 23) and sizes["10", "14"] == (70, 110, 20)
     assert sizes["2", "06"] == (30, 62, 16) and sizes["22", "05"] == (25, 52, 18) and sizes["23", "09"] == (45, 100, 36)
     assert len(designations()) == len(sizes) == 16 + 2 * 17 + 2 * 17
+
+
+@pytest.mark.parametrize(
+    ("name", "rating"),
+    [
+        ("NCF3004", 28.1),
+        ("NCF 3005 CV", 31.9),
+        ("NCF3006V", 39.6),
+        ("NCF3007", 48.4),
+        ("NCF3008/C3", 57.2),
+        ("NCF3010", 76.5),
+    ],
+)
+def test_full_complement_rollers_have_both_ratings_of_their_catalogue(name, rating):
+    """C of ISO 281, which the estimate does not know; 1 % bounds the rounding of rollers to half millimetres."""
+    found = estimate(name)
+    assert cylindrical_ratings(found)[0] == pytest.approx(1e3 * rating, rel=0.01)
+    apart = found.pitch_diameter * abs(cmath.exp(2j * math.pi / found.rollers) - 1.0)  # of neighbours, twice
+    apart_of_more = found.pitch_diameter * abs(cmath.exp(2j * math.pi / (found.rollers + 1)) - 1.0)
+    assert apart_of_more < 2.0 * found.roller_diameter <= apart and "full complement" in found.estimated
+    assert ribbed_way(name) == "+x" and boundary(name).series == "30"
 
 
 @pytest.mark.parametrize("name", ["NU406", "NU219X", "NU1004", "NU221", "NU206W", ""])

@@ -10,7 +10,7 @@ from ehdmaps.physics.designations.reader import BALLS, ROLLERS, TAPERED, plain_n
 
 SERVED = (
     "deep groove balls 60, 62, 63, 64; angular contact balls 70, 72, 73; cylindrical rollers N, NU, NJ, NUP of 10, 2, "
-    "22, 3, 23; needles K, NA49; tapered rollers 302, 303, 313, 320, 322, 323"
+    "22, 3, 23, NCF of 30; needles K, NA49; tapered rollers 302, 303, 313, 320, 322, 323"
 )
 """Kinds and series that are served, in words."""
 

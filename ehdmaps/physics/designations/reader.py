@@ -39,6 +39,7 @@ _KINDS = (
         r"(NUP|NU|NJ|N)[ -]*(10|22|23|2|3)[ -]?(\d\d)(?:[ .-]*E[A-Z]{0,3})?",
         "XL|TVP[2-5]?|M1A?|JP[1-3]",
     ),
+    _Kind(CYLINDRICAL, r"(NCF)[ -]*(30)[ -]?(\d\d)(?:[ -]?C?V)?", "XL"),
     _Kind(NEEDLE, r"(R?NAV?)[ -]?(49)[ -]?(\d\d)", r"2?RSR?|XL|TN"),
     _Kind(NEEDLE_CAGE, r"(K) ?(\d+[X*]\d+[X*]\d+)(?:[ -]?TN)?", ""),
     _Kind(DEEP_GROOVE, r"(6[0234])[ -]?(\d\d)", rf"C(?![A-Z0-9])|{_SEALS}|NR?|{_CAGES}"),

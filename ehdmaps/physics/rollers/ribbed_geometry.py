@@ -1,4 +1,4 @@
-"""Cylindrical roller bearings whose ribs carry axial load: NJ one way, NUP both ways.
+"""Cylindrical roller bearings whose ribs carry axial load: NJ and NCF one way, NUP both ways.
 
 A force along the axis goes from a rib of the inner ring through the roller to the rib of the outer ring on the other
 side. Both lean on the ends of the roller, one above its axis and one below: a couple, which tilts the roller and which
@@ -38,7 +38,7 @@ WAYS = ("both", "+x", "-x")
 LARGEST_SHARE = 0.5
 """Largest axial over radial load of single row cylindrical roller bearings, SKF."""
 
-_TYPES = {"NUP": "both", "NJ": "+x"}
+_TYPES = {"NUP": "both", "NJ": "+x", "NCF": "+x"}
 _MM = 1e-3
 
 
@@ -183,19 +183,19 @@ def ribbed_way(designation: str) -> str:
     >>> ribbed_way("NUP 210 ECP"), ribbed_way("NJ308"), ribbed_way("NU210")
     ('both', '+x', '')
     """
-    match = re.match(r"NUP|NJ", plain_name(designation, ROLLERS))
+    match = re.match("|".join(_TYPES), plain_name(designation, ROLLERS))
     return _TYPES[match.group()] if match else ""
 
 
 def ribbed_estimate(
     designation: str, diametral_clearance: float | None = None, axial_clearance: float = 0.0
 ) -> RibbedGeometry:
-    """A bearing NJ or NUP by its designation.
+    """A bearing NJ, NUP or NCF by its designation.
 
     Parameters
     ----------
     designation : str
-        What `ehdmaps.physics.catalogue.designated` takes, of type NJ or NUP.
+        What `ehdmaps.physics.catalogue.designated` takes, of type NJ, NUP or NCF.
     diametral_clearance : float, optional
         [m]; that of the designation if left out.
     axial_clearance : float
@@ -221,7 +221,8 @@ def ribbed_estimate(
 
 
 NO_RIBS = (
-    "allowed for axial loads: balls, tapered rollers, NJ and NUP; N and NU have ribs on one ring only, needles none"
+    "allowed for axial loads: balls, tapered rollers, NJ, NUP and NCF; N and NU have ribs on one ring only, needles "
+    "none"
 )
 """Why a bearing carries no axial load."""
 
