@@ -11,7 +11,7 @@ from __future__ import annotations
 import argparse
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import partial
+from functools import cache, partial
 from importlib import resources
 from typing import Any
 
@@ -25,6 +25,12 @@ READERS: Mapping[str, Callable[[str], Any]] = {
     "float": float,
 }
 """Readers of values, by their names in a table."""
+
+
+@cache
+def _table(package: str) -> Mapping[str, Any]:
+    """Table of a program, in the file `commands.toml` of its package."""
+    return tomllib.loads((resources.files(package) / "commands.toml").read_text(encoding="utf-8"))
 
 
 def program(
@@ -45,7 +51,7 @@ def program(
     **words : str
         Further texts for {word}.
     """
-    table = tomllib.loads((resources.files(package) / "commands.toml").read_text(encoding="utf-8"))
+    table = _table(package)
     texts = {**table.get("words", {}), **words}
     top = Program(table["program"], table["description"], table["epilog"], table["renamed"])
     add_choices(top.shared, choices, file, several=several)

@@ -6,6 +6,7 @@ import argparse
 import importlib
 import sys
 from collections.abc import Sequence
+from functools import cache
 
 from ehdmaps.command_table import program
 from ehdmaps.errors import AnalysisError
@@ -19,6 +20,7 @@ _ROOMS = {
 """Packages of commands that measure the program, and of those on scene files; of the others `mbs.commands`."""
 
 
+@cache
 def parser() -> Program:
     """Return the parser of all commands."""
     top, commands = program("mbs", OPTIONS, "scene", several=True, varied=", ".join(VARIED))
