@@ -26,7 +26,7 @@ Conditions = tuple[float, float, float]
 _CELLS = 400
 _PARTS, _SAMPLES = 100, 16
 _PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
-_NEAR, _FAR = 1e-12, 0.1
+_NEAR, _FAR, _SOUGHT = 1e-12, 0.1, 100
 
 
 def cage_moment(force: FloatArray, displacement: FloatArray, rings: int) -> float:
@@ -150,16 +150,9 @@ def _lift_off(loads: LoadsOf, deepest: float) -> float:
     """An approach without load, close below the first one with load [m]; `deepest` where there is none."""
     if not loads(np.array([deepest]))[0] > 0.0:
         return deepest
-    step = 1e-9
-    while step < _FAR and loads(np.array([deepest - step]))[0] > 0.0:
-        step *= 2.0
-    low, high = deepest - step, deepest
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        if loads(np.array([middle]))[0] > 0.0:
-            high = middle
-        else:
-            low = middle
-        if high - low < _NEAR:
-            break
-    return low
+    below = deepest - np.append(0.0, np.geomspace(_NEAR, _FAR, _SOUGHT))[::-1]
+    while True:
+        first = int(np.argmax(loads(below) > 0.0))
+        if first == 0 or below[first] - below[first - 1] < _NEAR:
+            return float(below[max(first - 1, 0)])
+        below = np.linspace(below[first - 1], below[first], _SOUGHT)

@@ -9,7 +9,7 @@
  * library, not in what exports write. */
 #if defined(EHD_NUMBER) && defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) &&    \
     !defined(__SANITIZE_ADDRESS__) && defined(__OPTIMIZE__)
-#define EHD_CLONES __attribute__((target_clones("default", "arch=x86-64-v3")))
+#define EHD_CLONES __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
 #else
 #define EHD_CLONES
 #endif

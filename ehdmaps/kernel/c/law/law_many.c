@@ -77,6 +77,16 @@ static inline void line_splines(const ehd_line *line, int n, law_block *of) {
     }
 }
 
+/* Whether the line alone answers all places of a block, none of them above the map. */
+static inline int line_answers(int n, const double *restrict approach, const double *restrict rate,
+                               const double *restrict g, double held_approach, double limit) {
+    int64_t others = 0;
+    for (int i = 0; i < n; i++)
+        others |= !((fabs(rate[i]) <= DBL_MAX) & (-DBL_MAX <= approach[i]) & (approach[i] <= held_approach) &
+                    !(g[i] * g[i] * g[i] > limit));
+    return !others;
+}
+
 /* Force at one place of a point, counted. */
 static void count_force(const ehd_law_point *point, double approach, double rate, ehd_force *force, int64_t *counts) {
     no_force(force);
@@ -86,13 +96,15 @@ static void count_force(const ehd_law_point *point, double approach, double rate
         counts[COUNT_LOAD]++;
 }
 
-EHD_CLONES static void line_block(const ehd_law_point *point, const double *offset, const double *inverse_scale, int n,
-                                  const double *approach, const double *rate, law_block *of, double *w, double *k,
-                                  double *c) {
+/* Forces of a block; whether all of them stand, see line_answers. */
+EHD_CLONES static int line_block(const ehd_law_point *point, const double *offset, const double *inverse_scale,
+                                 double limit, int n, const double *approach, const double *rate, law_block *of,
+                                 double *w, double *k, double *c) {
     const ehd_line *line = &point->own;
     block_places(n, approach, offset, inverse_scale, line->start, line->step, (double)line->cells, of->place, of->scale);
     line_splines(line, n, of);
     block_forces(n, of, rate, w, k, c);
+    return line_answers(n, approach, rate, of->g, point->held_approach, limit);
 }
 
 void ehd_law_force_many(const ehd_law_point *point, int64_t count, const double *approach, const double *rate,
@@ -108,8 +120,9 @@ void ehd_law_force_many(const ehd_law_point *point, int64_t count, const double 
     }
     for (int64_t first = 0; first < count; first += MANY) {
         const int n = count - first < MANY ? (int)(count - first) : MANY;
-        if (plain)
-            line_block(point, offset, inverse_scale, n, approach + first, rate + first, &of, w + first, k + first, c + first);
+        if (plain && line_block(point, offset, inverse_scale, limit, n, approach + first, rate + first, &of, w + first,
+                                k + first, c + first))
+            continue;
         for (int i = 0; i < n; i++) {
             const int64_t at = first + i;
             if (plain && is_finite(rate[at]) && -DBL_MAX <= approach[at] && approach[at] <= point->held_approach) {
