@@ -1,6 +1,5 @@
-"""Settings of all tests, maps that several of them read, and the report of those that take long unmarked."""
+"""Settings of all tests, and maps that several of them read."""
 
-import collections
 import fcntl
 import gc
 import os
@@ -14,6 +13,7 @@ from hypothesis import settings
 
 from tests.cases.jobs import FINE, SMALL, WIDE_AXES, map_job
 from tests.cases.programs import held_to_run
+from tests.durations import Durations
 
 # CI must not fail on an example that nobody has seen before; a developer wants to see new ones
 settings.register_profile("ci", derandomize=True, deadline=None)
@@ -76,6 +76,7 @@ class Doctests:
 
 def pytest_configure(config: pytest.Config) -> None:
     config.pluginmanager.register(Doctests())
+    config.pluginmanager.register(Durations())
     share(config)
 
 
@@ -96,44 +97,6 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     items[:] = [item for item in items if not any(item.get_closest_marker(mark) for mark in LONG)]
 
 
-QUICK = 2.0
-"""Seconds of processor time, compiling included, that a test may take without the mark `slow`."""
-
-SPENT: dict[tuple[str, str], float] = {}
-"""Seconds of tests without the mark, by phase and name."""
-
-FILES: collections.Counter[str] = collections.Counter()
-"""Seconds of all tests, by file."""
-
-LISTED = 30
-"""Files that the report names."""
-
-
-def processor_time() -> float:
-    """Seconds of this process and of those that it waited for."""
-    times = os.times()
-    return times.user + times.system + times.children_user + times.children_system
-
-
-def spend(item: pytest.Item, phase: str) -> Iterator[None]:
-    begin = processor_time()
-    yield
-    seconds = processor_time() - begin
-    FILES[item.nodeid.partition("::")[0]] += seconds
-    if item.get_closest_marker("slow") is None:
-        SPENT[phase, item.nodeid] = seconds
-
-
-@pytest.hookimpl(hookwrapper=True, tryfirst=True)
-def pytest_runtest_setup(item: pytest.Item) -> Iterator[None]:
-    yield from spend(item, "setup")
-
-
-@pytest.hookimpl(hookwrapper=True, tryfirst=True)
-def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
-    yield from spend(item, "call")
-
-
 @pytest.hookimpl(hookwrapper=True)
 def pytest_runtest_makereport() -> Iterator[None]:
     outcome = yield
@@ -144,34 +107,6 @@ def pytest_runtest_makereport() -> Iterator[None]:
 def pytest_make_collect_report() -> Iterator[None]:
     outcome = yield
     held_to_run(outcome.get_result())
-
-
-def pytest_sessionfinish(session: pytest.Session) -> None:
-    """Hand what a worker of pytest-xdist spent to the process that reports."""
-    output = getattr(session.config, "workeroutput", None)
-    if output is not None:
-        output["spent"] = [(*test, seconds) for test, seconds in SPENT.items()]
-        output["files"] = dict(FILES)
-
-
-@pytest.hookimpl(optionalhook=True)
-def pytest_testnodedown(node: object) -> None:
-    """Take over what a worker spent; one that died hands over nothing."""
-    output = getattr(node, "workeroutput", {})
-    SPENT.update({(phase, name): seconds for phase, name, seconds in output.get("spent", [])})
-    FILES.update(output.get("files", {}))
-
-
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Name the tests that should be quicker or be marked; a report and no failure, for machines differ."""
-    over = sorted(((seconds, *test) for test, seconds in SPENT.items() if seconds > QUICK), reverse=True)
-    if over:
-        terminalreporter.section(f"not marked slow, and more than {QUICK:g} s of processor time")
-    for seconds, phase, name in over:
-        terminalreporter.write_line(f"{seconds:.1f} s {phase} {name}")
-    total = sum(FILES.values())
-    terminalreporter.section(f"processor time of the tests: {total:.0f} s; the files that take most of it")
-    terminalreporter.write_line(", ".join(f"{name} {seconds:.0f} s" for name, seconds in FILES.most_common(LISTED)))
 
 
 def made_map(name: str, text: str, statuses: tuple[int, ...] = (0,)) -> str:

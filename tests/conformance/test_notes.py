@@ -81,8 +81,8 @@ FACTS = (
     ),
 )
 
+STATICS = ("statics",)
 COMMANDS = (
-    ("statics",),
     ("modes",),
     ("lsa",),
     ("sweep", "--workers", "1"),
@@ -94,11 +94,11 @@ COMMANDS = (
 @pytest.mark.parametrize("fact", FACTS, ids=lambda fact: fact.name)
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if kind.films], ids=lambda kind: kind.name)
 def test_fact(kind, fact, capsys, tmp_path, monkeypatch):
-    """The words are those of every kind; of a hundred numbers none is no number."""
+    """The words are those of every kind and command: each kind has those of `mbs statics`, and of two more in turn."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "machine.toml").write_text(fact.text(kind), encoding="utf-8")
-    wrong = []
-    for name, *options in COMMANDS:
+    wrong, turn = [], KINDS.index(kind) + 2 * FACTS.index(fact)
+    for name, *options in (STATICS, COMMANDS[turn % len(COMMANDS)], COMMANDS[(turn + 2) % len(COMMANDS)]):
         status, out, err = run(capsys, name, "machine.toml", "--law", DRY, *options)
         if status != fact.status or not re.search(fact.words, out):
             told = [line for line in (out + err).splitlines() if re.match("warning|error|mbs", line)]

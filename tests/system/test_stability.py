@@ -14,7 +14,7 @@ from mbs.laboratory.extremes.fuzzing import fuzz
 
 READERS = {**of_ehdmaps.READERS, **of_mbs.READERS}
 
-MUTATIONS = 250
+MUTATIONS = 100
 """Damaged files for each reader; the long form, the commands `stability` of both programs, has 10000."""
 
 
@@ -24,7 +24,7 @@ def test_damaged_files_are_read_or_refused_and_do_no_harm(name) -> None:
     found = fuzz(READERS[name](), MUTATIONS, 14)
     assert found.failed == 0, checks_text([found])
     # Neither all refused nor all read: the damage is of the kind that tells something.
-    assert found.right >= 5 and found.refused > 0.5 * MUTATIONS
+    assert found.right >= 2 and found.refused > 0.5 * MUTATIONS
     assert found.tried == MUTATIONS
 
 
