@@ -234,7 +234,6 @@ def bearing_point(
     pose = np.array([0.0, *balance.displacement, 0.0, 0.0, 0.0])
     rollers, u = element.loads(pose, operation), element.entrainment_speed(operation)
     contacts = bearing_contacts(films, rollers, u, temperature)
-    stiffness = balance.element_stiffness[0][1:3, 1:3]
     gauge = element.gauge(pose, operation)
     assert gauge is not None  # it has a `BearingForce`
     problems = outside_map(force.law, float(rollers.load_per_length.max()), u, temperature)
@@ -245,7 +244,7 @@ def bearing_point(
         fading(force.law, u),
         guessed(force.law, rollers.load_per_length, u, temperature),
         "" if _knows_heat(films) else heated(contacts, films.lubricant, modulus, u, temperature),
-        _loose(stiffness, given),
+        _loose(balance.element_stiffness[0][1:3, 1:3], given),
         _between_points(films, element, pose, operation, given),
     ]
     return BearingPoint(
@@ -255,8 +254,7 @@ def bearing_point(
         entrainment_speed=u,
         temperature=temperature,
         displacement=balance.displacement,
-        stiffness=stiffness,
-        damping=balance.element_damping[0][1:3, 1:3],
+        matrices=np.stack([balance.element_stiffness[0], balance.element_damping[0]]),
         elements=rollers,
         contacts=contacts,
         loss=rolling_loss(force.bearing, films, contacts, rollers, u, speed, temperature),

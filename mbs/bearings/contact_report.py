@@ -29,6 +29,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -421,8 +422,8 @@ class BearingPoint(WithFindings):
         u [m/s], T [K].
     displacement : array, shape (2,)
         Displacement of the inner ring against the outer one, y and z [m].
-    stiffness, damping : array, shape (2, 2)
-        Stiffness and damping of the bearing in y and z [N/m], [N s/m].
+    matrices : array, shape (2, 6, 6)
+        -d force/d pose and -d force/d velocity of the inner ring.
     elements : RollerLoads
         Loads of rollers and slices.
     contacts : BearingContacts
@@ -441,13 +442,23 @@ class BearingPoint(WithFindings):
     entrainment_speed: float
     temperature: float
     displacement: FloatArray
-    stiffness: FloatArray
-    damping: FloatArray
+    matrices: FloatArray
     elements: RollerLoads
     contacts: BearingContacts
     loss: RollingLoss
     findings: tuple[Finding, ...]
     failed: bool = False
+    axial: ClassVar[float] = 0.0
+
+    @property
+    def stiffness(self) -> FloatArray:
+        """Stiffness of the bearing in y and z, (2, 2) [N/m]."""
+        return self.matrices[0, 1:3, 1:3]
+
+    @property
+    def damping(self) -> FloatArray:
+        """Damping of the bearing in y and z, (2, 2) [N s/m]."""
+        return self.matrices[1, 1:3, 1:3]
 
     @property
     def size(self) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
+import tomllib
 
 import numpy as np
 import pytest
@@ -58,6 +59,12 @@ def test_one_bearing(name, capsys, tmp_path, monkeypatch):
         assert copy.attrs["comment"].startswith(f"copy of {new}: the next release has no ")
     for words in (f"{element}s carry more than 1 %", "damping, low-frequency limit", "Lambda", "assumed: "):
         assert words in page
+    status, _, err = run(capsys, "bearing", *ask, "--bands", "numerics", "-o", "a.toml")  # for ROSS, whose x is y here
+    assert status == 0, err
+    (matrices,) = tomllib.loads((tmp_path / "a.toml").read_text(encoding="utf-8")).values()
+    found = [np.ravel(matrices[key])[0] for key in ("kxx", "kyy", "cxx", "cyy")]
+    asked = [float(data[key][0, 0]) for key in SHARED[:4]]
+    assert found == pytest.approx(asked, rel=1e-9)  # of the axes of the load
     status, table, err = run(capsys, "bearing", *ask, "--speed", "3000 rpm", "-o", "a.csv", "--plot", "b.svg")
     assert status == 0, err
     heads = next(line for line in table.splitlines() if "K along" in line).split()

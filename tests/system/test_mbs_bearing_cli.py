@@ -246,7 +246,7 @@ BAD = (
     ("NU308", ["--map", "MAP", "--oil", "FVA3"], "--oil: got 'FVA3' with a map, which was made for an oil"),
     ("N1014", ["--map", "MAP"], "--map: is made for NU308: inner_raceway_diameter 52 mm and not 82 mm"),
     ("NU308", ["--oil", "FVA9"], "--oil: lubricant name: got 'FVA9' (did you mean 'FVA3'?); allowed: FVA3, "),
-    ("NU308", ["-o", "x.txt"], "-o: got x.txt; allowed: a file that ends in .nc, .csv"),
+    ("NU308", ["-o", "x.text"], "-o: got x.text; allowed: a file that ends in .nc, .csv, .toml, .bdf, .inp, .txt"),
     ("NU308", ["--plot", "x.bmp"], "--plot: got x.bmp; allowed: a file that ends in .png, .pdf, .svg"),
     ("NU308", ["--map", "MAP", "-o", "MAP"], "which would be written over"),
     ("bare.toml", [], "bare.toml: bearing file: has [contact]; allowed: [bearing]"),

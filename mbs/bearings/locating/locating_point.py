@@ -200,6 +200,11 @@ class LocatingPoint(WithFindings):
         raise NotImplementedError
 
     @property
+    def matrices(self) -> FloatArray:
+        """Stiffness and damping, (2, 6, 6)."""
+        return np.stack([self.stiffness, self.damping])
+
+    @property
     def geometry(self) -> Any:
         """Geometry of the bearing."""
         return self.force.geometry

@@ -1,4 +1,4 @@
-"""Files of a bearing that carries axial load for other programs: linear programs, C, Functional Mock-up Units."""
+"""Files of a bearing for other programs: linear programs, C, Functional Mock-up Units."""
 
 from __future__ import annotations
 
@@ -66,15 +66,19 @@ def is_export(path: str | None) -> bool:
     return is_linear(path) or ending_of(path) in (SOURCE, UNIT)
 
 
-def bearing_outputs(path: str | None) -> tuple[Output, ...]:
+def bearing_outputs(path: str | None, *, itself: bool) -> tuple[Output, ...]:
     """All files that -o asks for.
 
     Parameters
     ----------
     path : str or None
         Path of -o.
+    itself : bool
+        Whether the bearing itself is written, as C or as a unit.
     """
     ending = ending_of(path)
+    if not itself:
+        return linear_outputs(path)
     if path is not None and ending == SOURCE:
         from mbs.exports.one_bearing import source
 
@@ -105,7 +109,9 @@ def write_export(path: str, given: Export) -> str:
     heads = heading(family.kind, given.description, points[0])
     if is_linear(path):
         oscillating = family.oscillating(points) if given.memory and family.oscillating else None
-        return write_linear(path, given.force.geometry.name, heads, points, given.outer_speed, oscillating)
+        return write_linear(
+            path, family.kind.geometry_of(points[0]).name, heads, points, given.outer_speed, oscillating
+        )
     assert family.exported is not None  # `is_export` was asked of such families alone
     kind, ends, words = family.exported(), _turning_speeds(given), DRY
     films = None if ends is None else given.films

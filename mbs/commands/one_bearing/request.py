@@ -34,7 +34,6 @@ from mbs.commands.one_bearing.shared import (
     ring_texts,
 )
 from mbs.model.findings import Cause, Finding
-from mbs.output.files import result_kind
 from mbs.output.one_bearing.kind import Description, Points
 from mbs.scene.contact_laws import table_path
 from mbs.scene.fields import MICROMETRE
@@ -86,7 +85,7 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
         arguments.output,
         len(operating.loads),
         len(operating.speeds),
-        of_one_load=family.exported is not None and is_export(arguments.output),
+        of_one_load=is_export(arguments.output),
     )
     if problems or asked is None or damper is None or oil is None:
         raise InputError(tuple(dict.fromkeys(problems)))
@@ -138,8 +137,7 @@ def _output_problems(
 ) -> Iterator[str]:
     """Problems with the files that are to be written; of rollers as C they name the command that writes them."""
     exports = family.exported is not None
-    plain = Output("-o", arguments.output, result_kind(arguments.output))
-    outputs = bearing_outputs(arguments.output) if exports else (plain,)
+    outputs = bearing_outputs(arguments.output, itself=exports)
     read = (arguments.bearing, chosen.get("map"), table_path(law))
     ending = ending_of(arguments.output)
     beside = f"; a bearing of rollers as {ending}: `ehdmaps export BEARING --to {ending[1:]}`"
