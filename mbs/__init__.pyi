@@ -44,7 +44,6 @@ from mbs.planning.plan import PlanSettings as PlanSettings
 from mbs.planning.plan import plan as plan
 from mbs.scene.assembly import Model as Model
 from mbs.scene.assembly import assemble as assemble
-from mbs.scene.choices import LawChoice as LawChoice
 from mbs.scene.matrices import MatrixSpec as MatrixSpec
 from mbs.scene.reader import parse_scene as parse_scene
 from mbs.scene.reader import read_scene as read_scene
@@ -54,6 +53,7 @@ from mbs.scene.specs import BearingSpec as BearingSpec
 from mbs.scene.specs import FlexibleSpec as FlexibleSpec
 from mbs.scene.specs import RigidSpec as RigidSpec
 from mbs.scene.specs import ShaftSpec as ShaftSpec
+from mbs.scene.subject import LawChoice as LawChoice
 from mbs.scene.turning import OrderLoad as OrderLoad
 from mbs.scene.turning import Unbalance as Unbalance
 from mbs.settings import CampbellSettings as CampbellSettings

@@ -20,7 +20,7 @@ from ehdmaps.errors import AnalysisError, EhdmapsError, InputError
 from ehdmaps.interrupts import deaf_children
 from ehdmaps.workers import start_worker
 from mbs.scene.assembly import Model
-from mbs.scene.choices import Subject
+from mbs.scene.subject import Subject
 
 Progress = Callable[[int, int], None]
 """Called with what is done and what there is to do in all: first with (0, total), last with (total, total)."""

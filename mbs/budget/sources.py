@@ -21,11 +21,12 @@ from mbs.analyses.operating import settled
 from mbs.budget.linear_look import LinearDifferences, LinearLook, LinearReference, linear_look
 from mbs.scene.assembly import Model
 from mbs.scene.changes import with_clearance_of
-from mbs.scene.choices import CHOICES, LawChoice, Subject, named_law
+from mbs.scene.choices import CHOICES
 from mbs.scene.contact_laws import law_label
 from mbs.scene.fields import HERTZ
 from mbs.scene.map_set import TABLE_LAW
 from mbs.scene.scene import Scene
+from mbs.scene.subject import LawChoice, Subject, named_law
 from mbs.settings import CAGE_ANGLES
 from mbs.unknowns.held_open import clearance_of, held_open
 from mbs.unknowns.unknown import Unknown

@@ -25,8 +25,9 @@ from mbs.analyses.sensors import followed_orders
 from mbs.model.elements import Sensor
 from mbs.output.files import described
 from mbs.scene.assembly import Model, choice_attributes
-from mbs.scene.choices import VARIED, LawChoice, Subject
+from mbs.scene.choices import VARIED
 from mbs.scene.scene import Scene
+from mbs.scene.subject import LawChoice, Subject
 from mbs.settings import CampbellSettings, RunUp
 from mbs.spectral.campbell import campbell
 from mbs.spectral.levels import LevelDifference, Reference, at_equal_speeds

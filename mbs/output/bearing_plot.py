@@ -247,9 +247,6 @@ def _shade(order: int, count: int) -> str:
     return COLOURS[0] if count == 1 else to_hex(colormaps["viridis"](0.9 * order / (count - 1)))
 
 
-_RPM = 30.0 / np.pi
-
-
 def statics_figure(
     model: Model, balance: Equilibrium, contacts: Sequence[BearingContacts], warnings: Sequence[str] = ()
 ) -> Figure:
@@ -267,7 +264,7 @@ def statics_figure(
         What is to be warned of, written on the page.
     """
     count, elements = len(model.on_rings), []
-    figure, axes = page(model, f"{written(model.scene.speed * _RPM)} rpm", count)
+    figure, axes = page(model, f"{written(model.scene.speed * RPM.factor)} rpm", count)
     for bearing, state in zip(model.on_rings, contacts, strict=True):
         motion = model.system.relative(bearing.inner, bearing.outer) @ balance.displacement
         found, words = bearing.loads(motion, balance.operation), _contact_words(state)

@@ -20,7 +20,7 @@ from matplotlib.patheffects import withStroke
 from ehdmaps.arrays import FloatArray
 from ehdmaps.figures import COLOURS, SHADE, WARNING, legend_columns, typeset, write_heading
 from ehdmaps.units import written
-from mbs.output.page import BAND_ALPHA, BAND_WORDS, ESTIMATED, grid, shade_handle, whole_numbers
+from mbs.output.page import BAND_ALPHA, BAND_WORDS, ESTIMATED, grid, left_out, shade_handle, whole_numbers
 from mbs.spectral.campbell import Campbell, RunUpSpectra
 from mbs.spectral.levels import Reference, level
 from mbs.spectral.run_signal import RPM
@@ -388,17 +388,7 @@ def sensors_figure(
         panel.tick_params(labelsize=7)
     for panel in axes[-1]:
         panel.set_xlabel("speed, rpm", fontsize=7)
-    left_out = len(sensors) - rows
-    if left_out or len(laws) > 1:
-        figure.legend(
-            handles=axes[0, -1].lines if len(laws) > 1 else [],
-            title=f"{left_out} more sensors not drawn" if left_out else None,
-            title_fontsize=7,
-            loc="outside lower center",
-            ncols=min(len(laws), 3),
-            fontsize=7,
-            frameon=False,
-        )
+    left_out(figure, axes[0, -1].lines if len(laws) > 1 else [], len(sensors) - rows, min(len(laws), 3))
     return figure
 
 

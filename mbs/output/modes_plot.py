@@ -16,7 +16,7 @@ from matplotlib.patches import Patch
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.figures import COLOURS, legend_columns, typeset, without_latex, write_heading
-from ehdmaps.units import MOTIONS, Display, written
+from ehdmaps.units import MOTIONS, RPM, Display, written
 from mbs.linearised.modes import Modes
 from mbs.linearised.shapes import AXIS, EDGE, JOINT, MARK, Skeleton
 from mbs.modal.records import Channel
@@ -26,7 +26,6 @@ from mbs.output.page import BAND_WORDS, ESTIMATED, headed, shade, shade_handle
 from mbs.scene.assembly import Model
 from mbs.unknowns.of_modes import ModeBands
 
-_RPM = 30.0 / np.pi
 _MOST_LEVEL_LABELS = 12
 _MOST_LABELS = 60
 """That stand upright beside each other."""
@@ -64,7 +63,7 @@ def modes_figure(
     unknown : ModeBands, optional
         Bands of what is not known, told in place of numerics.
     """
-    figure = headed(model, f"{written(model.scene.speed * _RPM)} rpm")
+    figure = headed(model, f"{written(model.scene.speed * RPM.factor)} rpm")
     panel = figure.subplots()
     places = np.arange(shown.size)
     bottom = np.zeros(places.size)

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 from matplotlib.patches import Patch
 from matplotlib.ticker import ScalarFormatter
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.figures import SHADE, SHADE_ALPHA, typeset, write_heading
 from mbs.model.relaxation import NOTABLE
 from mbs.output.model_text import clearance_text, temperature_text
@@ -100,6 +103,48 @@ def shade(panel: Axes, begin: float, end: float, bottom: float = 0.0) -> None:
 def shade_handle(label: str) -> Patch:
     """Entry of a legend for the shade."""
     return Patch(color=SHADE, alpha=SHADE_ALPHA, lw=0.0, label=label)
+
+
+_LOGARITHMIC = 0.8
+"""Middle frequency over the mean of both ends, below which an axis goes as its frequencies, by factors."""
+
+
+def frequency_scale(frequencies: FloatArray) -> str:
+    """Scale of an axis of frequencies: logarithmic where they lie so, else linear.
+
+    Parameters
+    ----------
+    frequencies : array
+        Frequencies [Hz], rising.
+    """
+    first, middle, last = (float(frequencies[at]) for at in (0, frequencies.size // 2, -1))
+    return "log" if first > 0.0 and middle < _LOGARITHMIC * 0.5 * (first + last) else "linear"
+
+
+def left_out(figure: Figure | SubFigure, handles: Sequence[Artist], missing: int, columns: int = 3) -> None:
+    """A legend below a figure, with a line on sensors that are not drawn; nothing where there is neither.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure or SubFigure
+        The figure.
+    handles : sequence of matplotlib.artist.Artist
+        Entries of the legend.
+    missing : int
+        How many sensors are not drawn.
+    columns : int
+        Entries beside each other.
+    """
+    if handles or missing:
+        figure.legend(
+            handles=handles,
+            title=f"{missing} more sensors not drawn" if missing else None,
+            title_fontsize=7,
+            loc="outside lower center",
+            ncols=columns,
+            fontsize=7,
+            frameon=False,
+        )
 
 
 def whole_numbers(panel: Axes) -> None:

@@ -13,7 +13,7 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.figures import COLOURS, typeset, write_heading
 from ehdmaps.units import RPM
 from mbs.model.on_rings import ring_motion
-from mbs.output.page import grid, headed, shade, shade_handle, whole_numbers
+from mbs.output.page import grid, headed, left_out, shade, shade_handle, whole_numbers
 from mbs.scene.assembly import Model
 from mbs.spectral.spectra import AmplitudeSpectrum
 from mbs.timedata.records import TimeData, TimeRecord
@@ -77,21 +77,11 @@ def signal_panels(
     for row in range(1, rows):
         for panel, above in zip(axes[row], axes[0], strict=True):
             panel.sharex(above)
-    left_out = len(records[0].sensors) - rows
-    if records[1:] or left_out:
-        handles = [
-            Line2D([], [], color=colour, lw=1.2, label=typeset(record.label))
-            for record, colour in zip(records, COLOURS, strict=False)
-        ]
-        figure.legend(
-            handles=handles if records[1:] else [],
-            title=f"{left_out} more sensors not drawn" if left_out else None,
-            title_fontsize=7,
-            loc="outside lower center",
-            ncols=3,
-            fontsize=7.5,
-            frameon=False,
-        )
+    handles = [
+        Line2D([], [], color=colour, lw=1.2, label=typeset(record.label))
+        for record, colour in zip(records, COLOURS, strict=False)
+    ]
+    left_out(figure, handles if records[1:] else [], len(records[0].sensors) - rows)
     return list(axes[:, 0])
 
 
@@ -119,7 +109,6 @@ def _decades(panel: Axes) -> None:
         panel.set_ylim(max(lowest, 1e-6 * highest), 2.0 * highest)
 
 
-_RPM = 30.0 / np.pi
 _WIDTH, _COLUMN, _HEIGHT = 9.0, 2.6, 5.8
 _SENSOR, _MARGIN, _SPECTRUM = 1.25, 0.9, 3.4
 """Height of the row of a sensor, of what is around all rows, and width of a column of spectra [inch]."""
@@ -184,7 +173,7 @@ def run_figure(
                 axes[row, index].plot(one.time, values, color=colour, lw=0.8, zorder=order)
             axes[0, index].set_title(bearing.name, fontsize=9)
     for panel in axes[2]:
-        panel.plot(run.time, run.speed * _RPM, color="0.2", lw=1.0)
+        panel.plot(run.time, run.speed * RPM.factor, color="0.2", lw=1.0)
         panel.set_xlabel("time, s")
     axes[0, 0].set_ylabel(f"bearing force, {force_unit}")
     axes[1, 0].set_ylabel(f"inner ring against\nthe outer one, {length_unit}")

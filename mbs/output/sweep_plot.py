@@ -21,7 +21,17 @@ from ehdmaps.units import DAMPER, RPM, SPRING, written
 from mbs.linearised.critical import CriticalSpeed, OrderResponse
 from mbs.linearised.linear import response_display
 from mbs.linearised.sweep_result import Sweep, UndampedSweep
-from mbs.output.page import BAND_ALPHA, BAND_WORDS, ESTIMATED, grid, headed, shade, shade_handle, whole_numbers
+from mbs.output.page import (
+    BAND_ALPHA,
+    BAND_WORDS,
+    ESTIMATED,
+    frequency_scale,
+    grid,
+    headed,
+    shade,
+    shade_handle,
+    whole_numbers,
+)
 from mbs.output.sweep_data import orbits
 from mbs.scene.assembly import Model
 from mbs.scene.fields import MICROMETRE
@@ -261,9 +271,7 @@ def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str], limits:
     lowest, highest = (5.0 * np.round(np.percentile(beside, part) / 5.0) for part in (1.0, 99.7))
     lowest, highest = max(lowest, highest - _LEVELS_SHOWN), max(highest, lowest + 5.0)
     # The axis goes as the frequencies were asked for: the middle of a logarithmic one lies low.
-    middle = responses.frequencies[responses.frequencies.size // 2]
-    mean = 0.5 * (responses.frequencies[0] + responses.frequencies[-1])
-    scale = "log" if responses.frequencies[0] > 0.0 and middle < 0.8 * mean else "linear"
+    scale = frequency_scale(responses.frequencies)
     image = None
     for panel, entry, level, label, limit in zip(axes, maps, levels, labels, limits, strict=False):
         image = panel.pcolormesh(
@@ -346,7 +354,6 @@ def _positive(values: FloatArray) -> FloatArray:
     return np.where(values > _NOTHING, values, np.nan)
 
 
-_RPM = 30.0 / np.pi
 _LEAST = 1e-15
 """Radius below which an orbit is drawn as none [m]."""
 
@@ -401,7 +408,7 @@ def critical_figure(laws: Sequence[CriticalCurves]) -> Figure:
     rows = 1 + len(first.responses)
     figure = headed(first.model, "critical speeds", (9.0, 3.0 + 2.6 * rows), "laws side by side" if several else None)
     panels = figure.subplots(rows, 1, sharex=True, squeeze=False)[:, 0]
-    turns = first.sweep.speeds * _RPM
+    turns = first.sweep.speeds * RPM.factor
     for index, law in enumerate(laws):
         _damped_modes(panels[0], law, COLOURS[index % len(COLOURS)], COLOURS[index if several else 1])
         for panel, response in zip(panels[1:], law.responses, strict=True):
@@ -424,10 +431,10 @@ def critical_figure(laws: Sequence[CriticalCurves]) -> Figure:
 def _damped_modes(panel: Axes, law: CriticalCurves, colour: str, marked: str) -> None:
     """Damped modes over speed, and the critical speeds."""
     frequencies = law.sweep.damped.eigenvalues.imag / (2.0 * np.pi)
-    panel.plot(law.sweep.speeds * _RPM, frequencies, color=colour, lw=1.0)
+    panel.plot(law.sweep.speeds * RPM.factor, frequencies, color=colour, lw=1.0)
     for entry in law.found:
         marker = "o" if math.isnan(entry.whirl) else "^" if entry.whirl > 0.0 else "v"
-        panel.plot(entry.speed * _RPM, entry.eigenvalue.imag / (2.0 * np.pi), marker, color=marked, ms=6)
+        panel.plot(entry.speed * RPM.factor, entry.eigenvalue.imag / (2.0 * np.pi), marker, color=marked, ms=6)
 
 
 def _lines(panel: Axes, law: CriticalCurves) -> None:
@@ -435,8 +442,10 @@ def _lines(panel: Axes, law: CriticalCurves) -> None:
     speeds = law.sweep.speeds
     for order in law.orders:
         frequencies = order * speeds / (2.0 * np.pi)
-        panel.plot(speeds * _RPM, frequencies, color="0.5", lw=0.9, ls="--")
-        panel.annotate(f"order {order:.4g}", (speeds[-1] * _RPM, frequencies[-1]), fontsize=7, ha="right", va="bottom")
+        panel.plot(speeds * RPM.factor, frequencies, color="0.5", lw=0.9, ls="--")
+        panel.annotate(
+            f"order {order:.4g}", (speeds[-1] * RPM.factor, frequencies[-1]), fontsize=7, ha="right", va="bottom"
+        )
     panel.set(
         ylabel="frequency of damped modes, Hz",
         ylim=(0.0, _ROOM * max(law.orders) * float(speeds[-1]) / (2.0 * np.pi)),
@@ -453,7 +462,7 @@ def _orbits(panel: Axes, law: CriticalCurves, response: OrderResponse, colour: s
     places, axes = orbits(law.model.system, response)
     for index in range(len(places)):
         style = {"color": COLOURS[index % len(COLOURS)]} if colour is None else {"color": colour, "ls": _style(index)}
-        panel.semilogy(law.speeds * _RPM, np.maximum(axes[:, index, 0], _LEAST) * 1e6, lw=1.1, **style)
+        panel.semilogy(law.speeds * RPM.factor, np.maximum(axes[:, index, 0], _LEAST) * 1e6, lw=1.1, **style)
     panel.set_ylabel(f"orbit by order {response.order:.4g},\nlargest radius, {typeset(MICROMETRE.unit)}")
 
 

@@ -17,6 +17,7 @@ from matplotlib.patheffects import withStroke
 from ehdmaps.arrays import FloatArray
 from ehdmaps.figures import typeset, write_heading
 from ehdmaps.units import RPM
+from mbs.output.page import frequency_scale
 
 MOST_CASES = 4
 """That are drawn, one below the other."""
@@ -39,8 +40,6 @@ _DOTS = (0, (1.0, 3.0))
 _LEAST_APART = 0.05
 """Between two names of orders, as a part of the axis."""
 
-_LOGARITHMIC = 0.8
-"""Middle frequency over the mean of both ends, below which an axis goes as its frequencies, by factors."""
 
 _KILO = 2000.0
 """Highest frequency that is still shown in Hz."""
@@ -131,14 +130,9 @@ def _colours(cases: Sequence[Waterfall]) -> _Range:
 
 def _unit(case: Waterfall) -> tuple[float, str]:
     """Factor and unit of the frequencies."""
-    return (1e-3, "kHz") if case.frequencies[-1] > _KILO and _scale(case) == "linear" else (1.0, "Hz")
-
-
-def _scale(case: Waterfall) -> str:
-    """Scale of the axis of frequencies: as they were asked for."""
-    first, last = float(case.frequencies[0]), float(case.frequencies[-1])
-    middle = float(case.frequencies[case.frequencies.size // 2])
-    return "log" if first > 0.0 and middle < _LOGARITHMIC * 0.5 * (first + last) else "linear"
+    return (
+        (1e-3, "kHz") if case.frequencies[-1] > _KILO and frequency_scale(case.frequencies) == "linear" else (1.0, "Hz")
+    )
 
 
 def _map(panel: Axes, case: Waterfall, colours: _Range, orders: Sequence[tuple[float, str]]) -> None:
@@ -148,7 +142,7 @@ def _map(panel: Axes, case: Waterfall, colours: _Range, orders: Sequence[tuple[f
     panel.pcolormesh(
         rpm, factor * case.frequencies, case.level.T, norm=colours.norm, cmap=_MAP, shading="nearest", rasterized=True
     )
-    panel.set_yscale(_scale(case))
+    panel.set_yscale(frequency_scale(case.frequencies))
     panel.set_xlim(float(rpm.min()), float(rpm.max()))
     panel.set_ylim(factor * case.frequencies[0], factor * case.frequencies[-1])
     panel.set_xlabel("speed, rpm", fontsize=8)
@@ -183,7 +177,7 @@ def _spectra(panel: Axes, case: Waterfall, colours: _Range, orders: Sequence[tup
         colourful = LineCollection(list(pieces), cmap=_MAP, norm=colours.norm, linewidths=0.9, zorder=order + 0.005)
         colourful.set_array(values)
         panel.add_collection(colourful)
-    panel.set_xscale(_scale(case))
+    panel.set_xscale(frequency_scale(case.frequencies))
     panel.set_xlim(frequencies[0], frequencies[-1])
     panel.set_ylim(float(rpm.min()) - 0.5 * apart, float(rpm.max()) + (_HEIGHT + 0.5) * apart)
     panel.set_xlabel(f"frequency, {unit}", fontsize=8)

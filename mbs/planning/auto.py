@@ -9,8 +9,9 @@ from typing import Generic, TypeVar
 
 from mbs.planning.physics import AutoSettings, Verdict, switched, verdicts
 from mbs.scene.assembly import Model
-from mbs.scene.choices import CHOICES, Subject, named_law
+from mbs.scene.choices import CHOICES
 from mbs.scene.scene import Scene
+from mbs.scene.subject import Subject, named_law
 
 R = TypeVar("R")
 

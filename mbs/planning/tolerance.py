@@ -42,9 +42,10 @@ from mbs.analyses.sensors import looked_at
 from mbs.analyses.step_error import StepCheck, level_change, up_to, window_sizes
 from mbs.model.elements import Sensor
 from mbs.scene.changes import cutoff_of, hurried
-from mbs.scene.choices import CHOICES, Subject
+from mbs.scene.choices import CHOICES
 from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.scene.scene import Scene
+from mbs.scene.subject import Subject
 from mbs.settings import CampbellSettings
 
 LEAST, MOST = 0.01, 20.0

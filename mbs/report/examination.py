@@ -15,9 +15,9 @@ from mbs.analyses.sweep import SweepResult, SweepSettings, sweep
 from mbs.budget.sources import error_budget
 from mbs.model.findings import Finding
 from mbs.scene.assembly import Model
-from mbs.scene.choices import Subject
 from mbs.scene.map_set import MapSet
 from mbs.scene.scene import Scene
+from mbs.scene.subject import Subject
 from mbs.settings import SweepRange
 
 R = TypeVar("R")

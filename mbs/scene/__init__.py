@@ -13,7 +13,8 @@ kinds          the machine elements that a scene may have, one row each
 bodies         bodies are built, each content once
 map_set        maps of a scene: each bearing takes the one that was made for it
 contact_laws   the contact law in force
-choices, combinations  what commands choose of a scene, one row each, and all values of several side by side
+subject        a scene with its law, as they are chosen: by names of laws, and by maps
+choices        what commands choose of a scene, one row each
 assembly       scene and law become a `Model`, or a list of all problems
 =============  ====================================================================================
 

@@ -3,7 +3,7 @@
 A row knows the option of the command line and its help, reads a text, tells a value, and gives a scene and law with
 that value. All commands on scenes take these rows, compare several values of one, and write into their results what was
 chosen; `mbs variants --vary` takes each by its name. So a choice more is a row more, with the function that changes a
-scene (`mbs.scene.changes`) or its law (here), and a paragraph of the reference.
+scene (`mbs.scene.changes`) or its law (here; laws are in `mbs.scene.subject`), and a paragraph of the reference.
 
 What takes long to import is imported by the function that needs it: the command line lists the rows before it knows
 what is asked.
@@ -13,24 +13,21 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from pathlib import Path
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 from ehdmaps.choices import ROUGHNESS, STRUCTURE, SUPPLY, Choice, one_of
-from ehdmaps.errors import EhdmapsError, InputError, Problems
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.units import RPM, TEMPERATURE, Display, quantity
-from mbs.model.relaxation import DEFAULT_FILMS, FILM_WORDS, Films
+from mbs.model.relaxation import DEFAULT_FILMS, FILM_WORDS
 from mbs.scene.fields import DEGREE, HERTZ, MICROMETRE
 from mbs.scene.map_set import TABLE_LAW
+from mbs.scene.subject import Subject, named_law, opened_maps
 
 if TYPE_CHECKING:
     from ehdmaps.physics.oil_supply import OilSupply
     from ehdmaps.physics.surface import Surface
-    from mbs.scene.assembly import Model
-    from mbs.scene.map_set import MapSet
-    from mbs.scene.scene import Scene
 
 FILMS = ("memory", "slow")
 """What --films takes: films that relax, and those of slow motion."""
@@ -45,74 +42,6 @@ MOST_FACTOR = 1e3
 MOST_SLICES = 10_000
 
 _SECOND, _MICROSECOND = Display("s"), Display("us", 1e6)
-
-
-@dataclass(frozen=True)
-class LawChoice:
-    """A contact law as it was chosen.
-
-    Attributes
-    ----------
-    label : str
-        The law in two words.
-    name : str or None
-        Name of the law, as `mbs.scene.assembly.assemble` takes it.
-    maps : MapSet or None
-        The maps of the law `map`, one for each type of bearing.
-    films : {"slow", "memory"} or None
-        Which films it is to have.
-    supply : OilSupply or None
-        Oil supply of all bearings; None for that of the scene, or of the map.
-    inlet_heat : bool
-        Whether heat in the inlet thins films of the film table; the maps of it know it themselves, too.
-    """
-
-    label: str
-    name: str | None
-    maps: MapSet | None = None
-    films: Films | None = None
-    supply: OilSupply | None = None
-    inlet_heat: bool = False
-
-    @property
-    def has_films(self) -> bool:
-        """Tell whether it knows an oil."""
-        return self.name in ("map", "formula") or (self.name is None and self.maps is not None)
-
-    @property
-    def may_relax(self) -> bool:
-        """Tell whether it has films that may relax; of ball bearings alone, too."""
-        return self.has_films or self.name == TABLE_LAW
-
-
-@dataclass(frozen=True, eq=False)
-class Subject:
-    """Subject of a run: a scene with a law.
-
-    Attributes
-    ----------
-    scene : Scene
-        The scene.
-    law : LawChoice
-        The law.
-    clearance : float or None
-        Diametral clearance of all bearings [m]; None for those of the scene.
-    chosen : mapping of str to str
-        What was chosen beside the law, by the names of the choices, as results tell it.
-    """
-
-    scene: Scene
-    law: LawChoice
-    clearance: float | None = None
-    chosen: Mapping[str, str] = field(default_factory=dict)
-
-    def model(self) -> Model:
-        """The model; see `mbs.scene.assembly.assemble`."""
-        from mbs.scene.assembly import assemble
-
-        law = self.law
-        model = assemble(self.scene, law.name, law.maps, self.clearance, law.films, law.supply, law.inlet_heat)
-        return dataclasses.replace(model, chosen=self.chosen)
 
 
 Concerned = Literal["all", "relaxing", "heat", "maps", "oil", "first"]
@@ -280,75 +209,6 @@ def _law_text(name: str) -> str:
     from mbs.scene.contact_laws import law_label
 
     return law_label(name)
-
-
-def named_law(name: str | None, scene: Scene) -> LawChoice:
-    """A law by its name; that of the film table brings its maps.
-
-    Parameters
-    ----------
-    name : str or None
-        hertz, formula, table and so on, see `mbs.scene.contact_laws`; None for the default of the scene.
-    scene : Scene
-        Scene with its bearings and its oil.
-
-    Raises
-    ------
-    InputError
-        If the film table does not serve the scene. What else is wrong about a law is said by `assemble`.
-    """
-    from mbs.scene.contact_laws import law_in_force, law_label
-
-    law, maps = law_in_force(name, None, scene)
-    if maps is not None:
-        return map_law(maps)
-    # a law that is dry by default has no name, so that its models tell why
-    return LawChoice(law_label(law), None if name is None and law == "hertz" else law)
-
-
-def map_law(maps: MapSet, words: str = "") -> LawChoice:
-    """The law of some maps.
-
-    Parameters
-    ----------
-    maps : MapSet
-        The maps.
-    words : str
-        What tells it from other laws of maps.
-    """
-    return LawChoice(f"{maps.label} {words}".rstrip(), "map", maps)
-
-
-def opened_maps(paths: Sequence[str], scene: Scene, problems: list[str]) -> list[LawChoice]:
-    """The laws of maps that are given together: one for each set, see `mbs.scene.map_set`.
-
-    Parameters
-    ----------
-    paths : sequence of str
-        Files of maps, or jobs.
-    scene : Scene
-        Scene with the bearings.
-    problems : list of str
-        What is wrong is appended.
-    """
-    from ehdmaps.jobs.show.opening import open_given
-    from mbs.scene.map_set import map_sets
-
-    maps = []
-    for path in paths:
-        try:
-            maps.append((Path(path).stem, open_given(path)))
-        except InputError as error:
-            problems += error.problems
-        except EhdmapsError as error:
-            problems += [f"--map: {line}" for line in str(error).splitlines()]
-    try:
-        sets = map_sets(maps, scene.bearings)
-    except InputError as error:
-        problems += error.problems
-        return []
-    labels = [one.label for _, one in sets]
-    return [map_law(one, words if labels.count(one.label) > 1 else "") for words, one in sets]
 
 
 def _with_law(subject: Subject, name: str) -> Subject:

@@ -20,8 +20,8 @@ from mbs.analyses.campbell import CampbellResult, campbell
 from mbs.analyses.step_error import StepCheck
 from mbs.planning.tolerance import Numerics, Tolerated, read_tolerance, within
 from mbs.scene import changes, map_set
-from mbs.scene.choices import LawChoice, Subject
 from mbs.scene.reader import read_scene
+from mbs.scene.subject import LawChoice, Subject
 
 DURATIONS = {"nu308_rigid": None, "nu2210_shaft": None, "gearbox": 0.5, "n1014_testrig": None}
 """Lengths of the ramps [s]; None: that of the scene."""

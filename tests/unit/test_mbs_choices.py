@@ -20,13 +20,13 @@ from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import Surface
 from mbs import assemble, statics
 from mbs.cli import main
-from mbs.commands.cases import load_cases, read_compared, read_dry
+from mbs.commands.cases import combinations, load_cases, read_compared, read_dry
 from mbs.output.model_text import heading
 from mbs.scene import choices
-from mbs.scene.choices import CHOICES, OPTIONS, VARIED, LawChoice, SceneChoice, Subject, named_law
-from mbs.scene.combinations import combinations
+from mbs.scene.choices import CHOICES, OPTIONS, VARIED, SceneChoice
 from mbs.scene.map_set import MapSet
 from mbs.scene.reader import parse_scene, read_scene
+from mbs.scene.subject import LawChoice, Subject, named_law
 from tests.cases.laws import dataset_of
 
 TEXT = (resources.files("mbs") / "systems" / "nu308_rigid.toml").read_text(encoding="utf-8").replace("= 41", "= 5")

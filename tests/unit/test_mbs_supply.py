@@ -20,10 +20,11 @@ from mbs.commands.cases import read_compared
 from mbs.output.state_text import FLOODED_NOTE, flooded_note
 from mbs.scene.assembly import law_attributes
 from mbs.scene.changes import with_supply
-from mbs.scene.choices import VARIED, LawChoice, Subject
+from mbs.scene.choices import VARIED
 from mbs.scene.contact_laws import ContactLaws, supply_words
 from mbs.scene.map_set import MapSet
 from mbs.scene.reader import parse_scene
+from mbs.scene.subject import LawChoice, Subject
 from tests.cases.commands import run
 from tests.cases.laws import dataset_of
 

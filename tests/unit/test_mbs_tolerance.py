@@ -18,7 +18,7 @@ from mbs.model.profiles import Advanced, Course, Harmonic, SpeedProfile
 from mbs.planning import tolerance as tolerance_module
 from mbs.planning.tolerance import Numerics, drift, read_tolerance
 from mbs.scene import changes
-from mbs.scene.choices import LawChoice, Subject
+from mbs.scene.subject import LawChoice, Subject
 from tests.cases.swinging import SWINGING
 
 DRY = LawChoice("dry", "hertz")

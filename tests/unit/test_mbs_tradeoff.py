@@ -21,8 +21,8 @@ from mbs.laboratory.tradeoff.data import trade_json
 from mbs.laboratory.tradeoff.machines import TradeoffSettings, tradeoff
 from mbs.laboratory.tradeoff.text import trade_text
 from mbs.scene import changes
-from mbs.scene.choices import LawChoice, Subject
 from mbs.scene.map_set import MapSet
+from mbs.scene.subject import LawChoice, Subject
 from tests.cases.laws import dataset_of
 from tests.unit.test_mbs_tolerance import SWINGING
 

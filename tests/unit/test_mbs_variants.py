@@ -21,8 +21,9 @@ from mbs.laboratory.variants import Variation, variants
 from mbs.output.campbell_plot import variants_figure
 from mbs.scene import changes
 from mbs.scene.assembly import build_body
-from mbs.scene.choices import VARIED, LawChoice, Subject
+from mbs.scene.choices import VARIED
 from mbs.scene.map_set import MapSet
+from mbs.scene.subject import LawChoice, Subject
 from mbs.spectral.levels import LevelDifference, difference_text
 from tests.cases.laws import dataset_of
 from tests.cases.run_up import refused

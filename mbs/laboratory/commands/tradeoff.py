@@ -15,8 +15,8 @@ from mbs.laboratory.tradeoff.contacts import measure
 from mbs.laboratory.tradeoff.data import TRADE, check_trade_files, trade_json, write_trade
 from mbs.laboratory.tradeoff.machines import TradeoffSettings, tradeoff
 from mbs.laboratory.tradeoff.text import trade_text
-from mbs.scene.choices import LawChoice
 from mbs.scene.scene import Scene
+from mbs.scene.subject import LawChoice
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:

@@ -14,9 +14,10 @@ from mbs.commands.cases import read_compared
 from mbs.commands.common import Told, read_band, write
 from mbs.laboratory.variants import Variant, VariantsResult, Variation, variants
 from mbs.output.model_text import clearance_text, common_supply, held_lines, temperature_text, weight_text
-from mbs.scene.choices import VARIED, LawChoice
+from mbs.scene.choices import VARIED
 from mbs.scene.fields import HERTZ
 from mbs.scene.scene import Scene
+from mbs.scene.subject import LawChoice
 from mbs.settings import CampbellSettings
 from mbs.spectral.levels import Reference
 

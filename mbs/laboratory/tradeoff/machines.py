@@ -47,10 +47,11 @@ from mbs.linearised.averaged import pitch
 from mbs.planning.tolerance import Numerics
 from mbs.scene import changes
 from mbs.scene.assembly import Model
-from mbs.scene.choices import CHOICES, LawChoice, Subject, named_law
+from mbs.scene.choices import CHOICES
 from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.scene.map_set import TABLE_LAW, MapSet
 from mbs.scene.scene import Scene
+from mbs.scene.subject import LawChoice, Subject, named_law
 from mbs.settings import CAGE_ANGLES, CampbellSettings
 from mbs.spectral.levels import Reference
 

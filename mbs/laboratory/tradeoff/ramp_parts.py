@@ -21,7 +21,7 @@ from mbs.analyses.sensors import followed_orders
 from mbs.model.elements import Sensor
 from mbs.scene import changes
 from mbs.scene.assembly import Model
-from mbs.scene.choices import Subject
+from mbs.scene.subject import Subject
 from mbs.settings import CampbellSettings, RunUp
 from mbs.spectral.campbell import campbell
 from mbs.spectral.levels import Reference
