@@ -77,6 +77,7 @@ def bearing(
     profile: str = "iso",
     slices: int = 41,
     coupled: bool = False,
+    permittivity: str | None = None,
     choices: dict[str, str] | None = None,
 ) -> BearingResult:
     """Stiffness, damping, loads, pressures and films of one bearing of any kind, as `mbs bearing` finds them.
@@ -101,6 +102,8 @@ def bearing(
         Slices of a roller.
     coupled : bool
         Whether slices are coupled elastically.
+    permittivity : str, optional
+        Relative permittivity of the oil, "2.2", or a table in braces: the dataset then has electric numbers.
     choices : dict of str to str, optional
         Choices by the names of the options: {"law": "hertz", "clearance": "20 um"}.
 
@@ -132,12 +135,12 @@ def bearing(
         outer_speed=outer_speed,
         tilts=tilts,
         direction=[direction],
-        inner_ring_temperature=None,
-        outer_ring_temperature=None,
+        ring_temperatures=None,
         oil=oil,
         profile=profile,
         slices=str(slices),
         coupled=coupled,
+        permittivity=permittivity,
         output=None,
         plot=None,
         **{choice.key: [given.pop(choice.name)] if choice.name in given else None for choice in OPTIONS},

@@ -74,17 +74,11 @@ def profile_from_text(text: str, geometry: BearingGeometry | None, problems: lis
     """
     if text in NAMES:
         return text
-    from ehdmaps.jobs import table
-    from ehdmaps.jobs.table import Table
+    from ehdmaps.jobs.table import Table, inline
 
     value: object = text
-    if text.lstrip().startswith("{"):
-        try:
-            # A line break would let a text go on after the value.
-            value = table.parse(f"profile = {' '.join(text.splitlines())}", "--profile")["profile"]
-        except InputError as error:
-            problems += error.problems
-            return "iso"
+    if text.lstrip().startswith("{") and (value := inline(text, "--profile", problems)) is None:
+        return "iso"
     noted: list[str] = []
     found = read_profile(Table({"profile": value}, "--profile", noted), geometry)
     # Of the scene's words those of the key are the option's.

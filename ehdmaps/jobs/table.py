@@ -40,6 +40,31 @@ def parse(text: str, where: str) -> dict[str, Any]:
         ) from error
 
 
+def inline(text: str, option: str, problems: list[str]) -> Any:
+    """A table in braces, as an option has it; None where a problem was noted.
+
+    Parameters
+    ----------
+    text : str
+        The table.
+    option : str
+        Name of the option, for messages.
+    problems : list of str
+        Takes what is wrong.
+
+    Examples
+    --------
+    >>> inline('{ outlet = "gas" }', "--permittivity", [])
+    {'outlet': 'gas'}
+    """
+    try:
+        # A line break would let a text go on after the table.
+        return parse(f"value = {' '.join(text.splitlines())}", option)["value"]
+    except InputError as error:
+        problems += error.problems
+        return None
+
+
 def _deepest_key(line: str) -> int:
     """Most parts, with dots between them, of what may be a key in a line."""
     dense = "".join(line.split())

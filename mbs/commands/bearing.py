@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import re
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
-from ehdmaps.errors import InputError
-from ehdmaps.outputs import write_figure
+from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.outputs import Output, output_problems, write_figure
 from ehdmaps.physics.designations.families import not_served
 from mbs.commands.common import with_bands
 from mbs.commands.one_bearing.bands import point_lines
-from mbs.commands.one_bearing.family import Family
+from mbs.commands.one_bearing.family import Family, Request
 from mbs.output.one_bearing.kind import Description, Kind, Points
-from mbs.output.one_bearing.table import point_text
+from mbs.output.one_bearing.table import heading, point_text
+
+if TYPE_CHECKING:
+    from mbs.unknowns.looks import Band
 
 _BALLS = re.compile(r"\s*[67]\d{3}(?!\d)")
 """Beginning of the designation of a ball bearing."""
@@ -28,21 +34,86 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Compute all points, describe and write them; status 1 where one is outside of what the laws hold for."""
     asked: list[str] = []
     banded = with_bands(arguments, asked)
+    path, warmth = arguments.output, arguments.temperature or []
+    ending = Path(path or "").suffix.lower()
+    over = len(warmth) > 1 and arguments.permittivity is not None
+    if over and ending != ".csv":
+        asked.append(f"--temperature: got {len(warmth)} of them; allowed: one, or several with -o NAME.csv")
+    if ending == CIRCUIT:
+        asked += _circuit_problems(path, arguments.permittivity is not None)
+        arguments = argparse.Namespace(**{**vars(arguments), "output": None})
     if asked:
         raise InputError(asked)
     from mbs.commands.one_bearing import request as one  # with what its refusals do not need
 
     family = family_of(arguments.bearing, arguments.axial)
-    request = one.read_request(arguments, family)
-    kind, description, points = family.kind, request.description, one.points_of(request)
+    each = [{**vars(arguments), "temperature": [text]} for text in warmth] if over else [vars(arguments)]
+    requests = [one.read_request(argparse.Namespace(**each_), family) for each_ in each]
+    answers = [_answer(request, banded and not over) for request in requests]
+    lines = "\n\n".join("\n".join(answer.lines) for answer in answers).split("\n")
+    first, kind = answers[0], family.kind
+    if over:
+        from mbs.output.one_bearing.files import point_dataset, write_csv
+
+        datasets = [point_dataset(kind, answer.description, answer.points) for answer in answers]
+        write_csv(kind, kind.numbers_of(first.description), datasets, path)
+        lines.append(f"{path}: written")
+    elif ending == CIRCUIT:
+        lines.append(_circuit(path, kind, first))
+    elif path:
+        lines.append(one.write_file(path, requests[0], first.points, first.bands))
+    if arguments.plot:
+        lines.append(_drawn(arguments.plot, kind, first.description, first.points))
+    every = [point for answer in answers for row in answer.points for point in row]
+    return "\n".join(lines), 1 if any(point.problems for point in every) else 0
+
+
+CIRCUIT = ".cir"
+"""Ending of a subcircuit for SPICE."""
+
+
+class _Answer(NamedTuple):
+    """Points of a request, their bands, and what is told of them."""
+
+    description: Description
+    points: Points
+    bands: dict[str, Band]
+    lines: list[str]
+
+
+def _answer(request: Request, banded: bool) -> _Answer:
+    """Answer one request."""
+    from mbs.commands.one_bearing import request as one
+
+    family, description, points = request.family, request.description, one.points_of(request)
     bands = one.bands_of(request, points) if banded else {}
     told = point_lines(bands, one.scene_as(request)) if bands else []
-    lines = point_text(kind, description, points, [*family.beside(request, points), *told])
-    if arguments.output:
-        lines.append(one.write_file(arguments.output, request, points, bands))
-    if arguments.plot:
-        lines.append(_drawn(arguments.plot, kind, description, points))
-    return "\n".join(lines), 1 if any(point.problems for row in points for point in row) else 0
+    lines = point_text(family.kind, description, points, [*family.beside(request, points), *told])
+    return _Answer(description, points, bands, lines)
+
+
+def _circuit_problems(path: str, electric: bool) -> list[str]:
+    """Problems with a subcircuit."""
+    from mbs.output.one_bearing.electric import CIRCUITS
+
+    problems = output_problems([Output("-o", path, CIRCUITS)])
+    if not electric:
+        problems.append(f"-o: got {path!r:.80}, a circuit; allowed: with --permittivity 2.2, that of the oil")
+    return problems
+
+
+def _circuit(path: str, kind: Kind, answer: _Answer) -> str:
+    """Write the subcircuit of the only point."""
+    from mbs.output.one_bearing.electric import electrics, write_circuit
+
+    points = [point for row in answer.points for point in row]
+    if len(points) > 1:
+        raise InputError(f"-o {path}: got {len(points)} points; allowed: one load and one speed")
+    found = electrics(points[0], answer.description)
+    if math.isnan(found.capacitance):
+        raise AnalysisError(f"-o {path}: the bearing has no films at this point, and so no capacitance")
+    heads = heading(kind, answer.description, points[0])
+    return write_circuit(path, kind.geometry_of(points[0]).name, heads, found)
 
 
 def family_of(name: str, axial: str | None) -> Family:

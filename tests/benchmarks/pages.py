@@ -47,6 +47,7 @@ PAGES = (
     "docs/cfd.md",
     "docs/overnight.md",
     "docs/witnesses.md",
+    "docs/electrics.md",
     "docs/solids.md",
     "docs/python.md",
     "docs/glossary.md",

@@ -15,7 +15,15 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from tests.cases.witnesses import Series, centre_line, gmn_pairs, iso_16281, measured_films
+from tests.cases.witnesses import (
+    Series,
+    centre_line,
+    gmn_pairs,
+    hamrock_dowson,
+    iso_16281,
+    measured_capacitance,
+    measured_films,
+)
 
 
 def table(series: Sequence[Series]) -> list[str]:
@@ -54,7 +62,7 @@ def between_grooves(default: Series, loose: Series) -> str:
 
 def drawing(groups: Sequence[tuple[str, Sequence[tuple[str, Series]]]], path: Path) -> None:
     """Draw ours over theirs for every point, a panel for each witness."""
-    figure, axes = plt.subplots(1, len(groups), figsize=(13.0, 3.8), layout="constrained")
+    figure, axes = plt.subplots(1, len(groups), figsize=(15.0, 3.6), layout="constrained")
     for axis, (title, group) in zip(axes, groups, strict=True):
         for label, one in group:
             axis.plot(one.theirs, one.ratio, "o", markersize=3.5, alpha=0.8, label=label)
@@ -73,7 +81,8 @@ def main() -> None:
     parser.add_argument("--plot", type=Path)
     asked = parser.parse_args()
     pairs, films, line, iso = gmn_pairs(), measured_films(), centre_line(), iso_16281()
-    every = [*pairs, *films, *line, *iso]
+    electric = measured_capacitance()
+    every = [*pairs, *films, *line, hamrock_dowson(), *electric, *iso]
     print("\n".join([*table(every), between_grooves(*pairs)]))
     if asked.points:
         print("\n".join(points(every)))
@@ -85,6 +94,8 @@ def main() -> None:
             ("axial rigidity of pairs, GMN (59)", [*zip(grooves, pairs, strict=True)]),
             ("central films of FVA 3 (29)", [*zip(degrees, films, strict=True)]),
             ("plateau along a centre line, Mourier", [(one.name.partition(", ")[2], one) for one in plateaus]),
+            ("smallest films (8)", [("Hamrock and Dowson", hamrock_dowson())]),
+            ("capacitance of a contact (3)", [*zip(("all the oil", "plates of Hertz"), electric, strict=True)]),
         )
         drawing(groups, asked.plot)
 

@@ -17,6 +17,7 @@ PACKAGES = {
     "gfortran": "gfortran",
     "octave-cli": "octave octave-netcdf",
     "ccx": "calculix-ccx",
+    "ngspice": "ngspice",
     "chromium": "chromium",
     "chromium-browser": "chromium",
     "checkMesh": "openfoam",

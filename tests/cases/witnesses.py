@@ -17,17 +17,21 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import root
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.electrics import point_capacitance
+from ehdmaps.electrics.dielectric import VACUUM
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.point.ball_geometry import BallGeometry
-from ehdmaps.physics.point.ellipse import Ellipse
+from ehdmaps.physics.point.ellipse import Ellipse, ellipticity
 from ehdmaps.physics.solids import Material
 from ehdmaps.point import solve
+from ehdmaps.point.two_grids import Resolution, solve_groups
 from ehdmaps.table.points.file import shipped_point_table
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_point import BallPoint
 from mbs.bearings.balls.laws import dry_law
 from mbs.life import ball_reference_life
+from tests.cases.points import point_problem
 
 FOLDER = Path(__file__).parents[1] / "data" / "witness"
 STEEL_ON_GLASS = 2.0 / ((1.0 - 0.3**2) / 210e9 + (1.0 - 0.21**2) / 70e9)
@@ -141,6 +145,56 @@ def centre_line() -> tuple[Series, ...]:
         ]
     return tuple(found)
 
+
+@cache
+def measured_capacitance() -> tuple[Series, ...]:
+    """Capacitance of a ball on glass, FVA 3, beside that by the table of points, and by the plates of Hertz."""
+    ball, oil, points = (
+        Ellipse(9.525e-3, 9.525e-3, STEEL_ON_GLASS),
+        Lubricant.named("FVA3"),
+        rows("contact_capacitance"),
+    )
+    labels, theirs, ours, plates = [], [], [], []
+    for row in points:
+        kelvin, speed = float(row["oil_degC"]) + KELVIN, float(row["speed_m_per_s"])
+        permittivity = float(row["relative_permittivity"])
+        found = point_capacitance(ball, oil, RIG_LOAD, speed, kelvin, permittivity, RIG_GAP)
+        films = shipped_point_table().films(ball, oil, RIG_LOAD, speed, kelvin)
+        a, b = ball.semi_axes(RIG_LOAD)
+        labels.append(f"{speed:.3g} m/s {row['oil_degC']} degC")
+        theirs.append(float(row["capacitance_pF"]))
+        ours.append(1e12 * float(found.capacitance))
+        plates.append(1e12 * VACUUM * permittivity * math.pi * float(a * b / films.central_film))
+    names = "capacitance of a contact", "the same by the plates of Hertz"
+    first, second = (
+        Series(name, "pF", tuple(labels), np.array(theirs), np.array(each))
+        for name, each in zip(names, (ours, plates), strict=True)
+    )
+    return first, second
+
+
+HAMROCK_DOWSON = {1: 3.367, 1.25: 4.105, 1.5: 4.565, 2: 5.255, 3: 6.091, 4: 6.636, 6: 6.969, 8: 7.048}
+"""Computed minimum films, 1e6 h_min/Rx, by their ellipticity k: J. Lubr. Technol. 99, 1977, 264-276.
+
+From memory: no print of the table was found. The fit that the authors made of them is that of the paper's abstract."""
+
+
+@cache
+def hamrock_dowson() -> Series:
+    """Smallest films that Hamrock and Dowson computed beside solved ones; k = 1.03 (Ry/Rx)^0.64 is theirs."""
+    ours, speed = [], 2.0 * 0.1683e-11  # U with the sum of speeds
+    for k in HAMROCK_DOWSON:
+        kappa = 1.0 if k == 1 else float(ellipticity((k / 1.03) ** (-1.0 / 0.64)))
+        problem = point_problem(0.1106e-6 / speed**0.75, 4522.0 * speed**0.25, kappa, 1.98e-8)
+        found = solve_groups(problem, Resolution()).numbers
+        ours.append(1e6 * found.minimum_film * problem.moes * speed**0.5)
+    labels = tuple(f"k {k:g}" for k in HAMROCK_DOWSON)
+    theirs = np.array(list(HAMROCK_DOWSON.values()))
+    return Series("smallest films, Hamrock and Dowson", "1e-6 Rx", labels, theirs, np.array(ours))
+
+
+RIG_LOAD, RIG_GAP = 20.0, 1.9e-3
+"""Load of the rig [N], and gap at a fifth of the ball's radius from the axis [m], where the oil is taken to end."""
 
 PLATEAU = 100.0
 """Half of the plateau of the film [um]; the Hertz circle has 136.5 um."""

@@ -114,3 +114,45 @@ def test_bearings_with_axial_load_take_an_oil_layer(name, capsys, tmp_path, monk
     assert name == "6208" or found["1 um"][1] < 0.95 * found["flooded"][1]
     status, _, err = run(capsys, "bearing", *ask, "--law", "hertz", "--supply", "1 um")
     assert status == 2 and "--supply: got oil layer 1 um with dry contacts; allowed: with --law table" in err
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_electrics_of_one_bearing(name, capsys, tmp_path, monkeypatch):
+    """The same electric numbers for all, a row for each temperature; the warmer film is thinner, and has more."""
+    monkeypatch.chdir(tmp_path)
+    ask = (name, "--load", "2 kN", "--speed", "1500 rpm", "--law", "hertz", *KINDS[name], "--permittivity", "2.2")
+    status, page, err = run(
+        capsys, "bearing", *ask, "--temperature", "40 degC", "--temperature", "70 degC", "-o", "a.csv"
+    )
+    assert status == 0, err
+    with open("a.csv", encoding="utf-8") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    assert [float(row["temperature [K]"]) for row in rows] == [313.15, 343.15]
+    for row in rows:
+        low, found, high = (float(row[f"capacitance{end} [F]"]) for end in ("_low", "", "_high"))
+        assert 1e-11 < low < found < high < 1e-8
+        assert float(row["breakdown_high [V]"]) == pytest.approx(6.0 * float(row["breakdown_low [V]"]))
+    assert float(rows[1]["capacitance [F]"]) > float(rows[0]["capacitance [F]"])
+    assert page.count("breakdown at ") == 2
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--permittivity", "wet"), "--permittivity value: got 'wet'"),
+        (
+            ("--permittivity", "{ value = 2.2, outlet = 'wet' }"),
+            "outlet: got 'wet'; allowed: 'parallel'",
+        ),
+        (("--permittivity", "{ value = 2.2"), "--permittivity: is not TOML"),
+        (("-o", "a.cir"), "a circuit; allowed: with --permittivity 2.2"),
+        (("--permittivity", "2.2", "--temperature", "40 degC", "--temperature", "50 degC"), "several with -o NAME.csv"),
+        (("--permittivity", "2.2", "--load", "1 kN", "-o", "a.cir"), "got 2 points; allowed: one load and one speed"),
+    ],
+)
+def test_refused_electrics(options, words, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    ask = ("bearing", "6208", "--load", "2 kN", "--speed", "1500 rpm", "--law", "hertz")
+    status, _, err = run(capsys, *ask, *options)
+    assert status == 2 and words in err
+    assert not list(tmp_path.iterdir())

@@ -71,6 +71,7 @@ ALLOWED = {
         "ehdmaps.physics",
         "ehdmaps.table",
     },
+    "ehdmaps.electrics": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.maps", "ehdmaps.physics", "ehdmaps.table"},
     "ehdmaps.table": {
         "ehdmaps.arrays",
         "ehdmaps.compiled",
@@ -147,6 +148,7 @@ ALLOWED = {
         "ehdmaps.interrupts",
         "ehdmaps.workers",
         "ehdmaps.copies",
+        "ehdmaps.electrics",
         "ehdmaps.errors",
         "ehdmaps.extras",
         "ehdmaps.figures",
@@ -175,6 +177,7 @@ ALLOWED = {
         "ehdmaps.interrupts",
         "ehdmaps.workers",
         "ehdmaps.copies",
+        "ehdmaps.electrics",
         "ehdmaps.errors",
         "ehdmaps.extras",
         "ehdmaps.figures",

@@ -365,16 +365,15 @@ def test_rings_of_one_bearing(capsys):
         "500 rpm",
         "--clearance",
         "20 um",
-        "--inner-ring-temperature",
+        "--ring-temperatures",
         "60 degC",
+        "50 degC",
     )
-    status, out, err = run(capsys, *asked, "--outer-ring-temperature", "50 degC")
+    status, out, err = run(capsys, *asked)
     assert (status, err) == (0, "")
     assert (
         "55 degC, raceways 60 inner, 50 degC outer; operating clearance 12.28 um (20 um stated, temperature -7.72"
         in out
     )
-    status, out, err = run(capsys, *asked, "--outer-ring-temperature", "50 degC", "--temperature", "40 degC")
-    assert status == 2 and "allowed: two of the three" in err
-    status, out, err = run(capsys, *asked)
-    assert "50 degC, raceways 60 inner, 40 degC outer" in out and "assumed: temperature 40 degC" in out
+    status, out, err = run(capsys, *asked, "--temperature", "40 degC")
+    assert status == 2 and "with --ring-temperatures; allowed: one of the two" in err

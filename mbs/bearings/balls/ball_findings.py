@@ -13,6 +13,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.hertz import POINT_LIMIT
+from ehdmaps.physics.point.ball_geometry import BallGeometry
 from mbs.bearings.balls.ball_bearing import BallForce, BallLoads
 from mbs.model.findings import CARRIES, OPEN, SIDES, Cause, Finding, Gauge
 
@@ -59,14 +60,37 @@ def ball_pressures(force: BallForce, balls: BallLoads) -> FloatArray:
     return np.array([contact.max_pressure(balls.load[side]) for side, contact in enumerate(contacts)])
 
 
+def groove_half_width(geometry: BallGeometry, side: int) -> float:
+    """Half of the width of a groove from shoulder to shoulder, both as high as the loaded one is taken [m].
+
+    Parameters
+    ----------
+    geometry : BallGeometry
+        The bearing.
+    side : int
+        0: inner groove, 1: outer groove.
+    """
+    conformity = (geometry.inner_conformity, geometry.outer_conformity)[side]
+    return conformity * geometry.ball_diameter * math.sin(_end(geometry, side))
+
+
+def _height(geometry: BallGeometry) -> float:
+    """Height of the loaded shoulder over the ball diameter."""
+    return SHOULDERS[geometry.contact_angle != 0.0]
+
+
+def _end(geometry: BallGeometry, side: int) -> float:
+    """Angle along its arc at which a groove ends [rad]."""
+    return math.acos(1.0 - _height(geometry) / (geometry.inner_conformity, geometry.outer_conformity)[side])
+
+
 def _shoulder(force: BallForce, balls: BallLoads) -> Finding | None:
     """Ellipses that reach over the shoulder of their groove."""
     geometry = force.geometry
-    height, half = SHOULDERS[geometry.contact_angle != 0.0], 0.5 * geometry.ball_diameter
+    height, half = _height(geometry), 0.5 * geometry.ball_diameter
     worst, place = 1.0, ""
     for side, contact in enumerate(geometry.contacts(force.material)):
-        conformity = (geometry.inner_conformity, geometry.outer_conformity)[side]
-        end = math.acos(1.0 - height / conformity)
+        end = _end(geometry, side)
         carries = balls.load[side] > CARRIES * balls.load[side].max()
         _, across = contact.semi_axes(balls.load[side])
         reach = np.abs(balls.contact_angle[side]) + np.arcsin(np.minimum(across / half, 1.0))

@@ -30,6 +30,8 @@ class BallPoint(LocatingPoint):
     ----------
     motion : Motion
         Entrainment, slip and spin of the contacts.
+    film_offset : array (2, Z)
+        Film offsets of the contacts [m]; their central films where these come from formulas.
     film_errors : array (2, 4)
         Largest stated errors of film offset, central and smallest film, and damping, of the inner and outer contacts
         that carry more than 1 % of the highest load; NaN where films come from formulas, or there are none.
@@ -39,6 +41,7 @@ class BallPoint(LocatingPoint):
     force: BallForce
     elements: BallLoads
     motion: Motion
+    film_offset: FloatArray
     film_errors: FloatArray
 
     @staticmethod
@@ -57,7 +60,7 @@ class BallPoint(LocatingPoint):
         """See `LocatingPoint.own`."""
         force, balls = at.force, at.loads
         pressure, motion = ball_pressures(force, balls), ball_motion(force, balls, *course.speeds)
-        central, minimum = np.full((2, *pressure.shape), np.nan)
+        central, minimum, moved = np.full((3, *pressure.shape), np.nan)
         film_errors = np.full((2, 4), np.nan)
         oil = course.oil if course.speeds[0] != course.speeds[1] else None
         for side, contact in enumerate(force.geometry.contacts(force.material)):
@@ -74,12 +77,14 @@ class BallPoint(LocatingPoint):
             else:
                 continue
             held = offset <= contact.widest_film
-            central[side, carries], minimum[side, carries] = np.where(held, (thick, thin), np.nan)
+            films = np.where(held, (thick, thin, offset), np.nan)
+            central[side, carries], minimum[side, carries], moved[side, carries] = films
         return {
             "motion": motion,
             "pressure": pressure,
             "central_film": central,
             "minimum_film": minimum,
+            "film_offset": moved,
             "film_errors": film_errors,
         }
 

@@ -26,6 +26,7 @@ NAME = "bearing"
 """How the bearing is called."""
 
 _MATRICES = (("K", "stiffness", SPRING), ("C", "damping", DAMPER))
+_ELECTRIC = ("capacitance", "breakdown_low", "breakdown_high")
 _CONTACTS = (("pressure", "hertz_pressure", PRESSURE, np.argmax), ("film", "minimum_film", FILM, np.nanargmin))
 
 
@@ -81,7 +82,7 @@ def point_bands(
     def numbers(told: Description, found: Any) -> dict[str, FloatArray]:
         row = row_of(kind, told, found)
         names = [f"{name}_{way}" for _, name, _ in _MATRICES for way in ("along", "across", "axial")]
-        names += [name for _, name, _, _ in _CONTACTS] + ["central_film", "highest_raceway_load"]
+        names += [name for _, name, _, _ in _CONTACTS] + ["central_film", "highest_raceway_load", *_ELECTRIC]
         return {name: np.asarray(row[name], dtype=np.float64) for name in names if name in row}
 
     centre = numbers(description, point)
@@ -114,3 +115,5 @@ def _quantities(bands: dict[str, Band]) -> Iterator[Quantity]:
         if name in bands and np.isfinite(bands[name].value).any():
             yield Quantity("", words, shown.unit, bands[name].of(int(worst(bands[name].value))).scaled(shown.factor))
     yield Quantity("", "highest load", "N", bands["highest_raceway_load"])
+    if "capacitance" in bands and np.isfinite(bands["capacitance"].value).all():
+        yield Quantity("", "capacitance", "pF", bands["capacitance"].scaled(1e12))

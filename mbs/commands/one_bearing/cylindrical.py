@@ -36,7 +36,6 @@ from mbs.commands.one_bearing.shared import (
     read_profile_text,
     read_rings,
     read_whole,
-    ring_texts,
 )
 from mbs.output.one_bearing.cylindrical import CYLINDRICAL, asperity_band
 from mbs.output.one_bearing.kind import Points
@@ -87,7 +86,7 @@ def _read(arguments: argparse.Namespace, chosen: Mapping[str, Any], problems: li
             geometry = geometry.with_clearance(chosen["clearance"])
         except InputError as error:
             problems += [f"--clearance: {problem}" for problem in error.problems]
-    if len(problems) == before and ring_texts(arguments) != (None, None):
+    if len(problems) == before and arguments.ring_temperatures is not None:
         warm = operating_clearance(geometry, Mounting(), *rings, given.material)
         state = BearingState("bearing", *rings, warm)
         geometry = dataclasses.replace(geometry, diametral_clearance=warm.operating)
@@ -371,7 +370,7 @@ CYLINDERS = Family(
     kind=CYLINDRICAL,
     words="bearing of cylindrical rollers",
     taken=tuple(choice.name for choice in OPTIONS if choice.name != "films"),
-    own=("inner-ring-temperature", "outer-ring-temperature", "profile", "slices", "coupled"),
+    own=("ring-temperatures", "profile", "slices", "coupled"),
     film_laws=("formula", TABLE_LAW, "map"),
     beside_laws=f"; {TABLE_FORM}",
     memory=(),

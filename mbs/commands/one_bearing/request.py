@@ -25,16 +25,16 @@ from mbs.commands.one_bearing.shared import (
     CELSIUS_40,
     ROUGHNESS,
     read_choices,
+    read_dielectric,
     read_heat,
     read_law,
     read_oil,
     read_operating,
     read_rings,
     refuse_others,
-    ring_texts,
 )
 from mbs.model.findings import Cause, Finding
-from mbs.output.one_bearing.kind import Description, Points
+from mbs.output.one_bearing.kind import Description, Number, Points
 from mbs.scene.contact_laws import table_path
 from mbs.scene.fields import MICROMETRE
 from mbs.scene.map_set import TABLE_LAW
@@ -71,7 +71,8 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
         problems.append(
             f"--films: got {chosen['films']!r} for a {family.words}; allowed: with --law {TABLE_LAW} and -o {files}"
         )
-    temperature, both_rings = 0.5 * sum(read_rings(arguments, chosen, problems)), None not in ring_texts(arguments)
+    temperature, of_rings = 0.5 * sum(read_rings(arguments, chosen, problems)), arguments.ring_temperatures is not None
+    dielectric = read_dielectric(arguments.permittivity, problems)
     stated = None if asked is None else asked.oil
     oil = read_oil(arguments.oil, temperature, problems, stated)
     lack = f"with dry contacts; allowed: with --law {TABLE_LAW}" if dry else ""
@@ -95,7 +96,7 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
     roughness = ROUGHNESS if surface.smooth else surface.roughness
     supply = chosen.get("supply") or asked.supply or FLOODED
     assumed = (
-        *([f"temperature {TEMPERATURE.text(CELSIUS_40)}"] if "temperature" not in chosen and not both_rings else []),
+        *([f"temperature {TEMPERATURE.text(CELSIUS_40)}"] if "temperature" not in chosen and not of_rings else []),
         *([f"combined rms roughness {MICROMETRE.text(ROUGHNESS)} (for Lambda only)"] if surface.smooth else []),
         *asked.assumed,
         *([f"oil {DEFAULT_OIL}"] if arguments.oil is None and stated is None else []),
@@ -124,12 +125,21 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
                 oil=oil,
                 state=asked.state,
                 known=chosen.get("know", ()),
+                dielectric=dielectric,
+                more=() if dielectric is None else _electric(),
             ),
         )
     )
     words, films = family.words_of(request)
     films += "" if oil.verified else " (unverified data of the oil)"
     return dataclasses.replace(request, description=dataclasses.replace(request.description, law=words, films=films))
+
+
+def _electric() -> tuple[Number, ...]:
+    """Electric numbers of a point."""
+    from mbs.output.one_bearing.electric import ELECTRIC  # with what only they need
+
+    return ELECTRIC
 
 
 def _output_problems(

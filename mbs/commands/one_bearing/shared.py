@@ -19,15 +19,15 @@ from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.surface import CrownedProfile, TabulatedProfile
 from ehdmaps.units import RPM, TEMPERATURE, Display, closest, quantity, short
-from mbs.bearings.films import SIDES
 from mbs.commands.one_bearing.family import Family, Operating
 from mbs.output.one_bearing.table import WIDE_RANGE
 from mbs.scene.choices import OPTIONS
 from mbs.scene.contact_laws import HERTZ_FORMS, Damper, hertz_damper
-from mbs.scene.fields import FORCE
+from mbs.scene.fields import FORCE, MICROMETRE
 from mbs.scene.map_set import TABLE_LAW
 
 if TYPE_CHECKING:
+    from ehdmaps.electrics.dielectric import Dielectric
     from ehdmaps.physics.point.ball_geometry import BallGeometry
     from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 
@@ -278,8 +278,7 @@ def refuse_others(
 
 
 _OWN = {
-    "inner-ring-temperature": None,
-    "outer-ring-temperature": None,
+    "ring-temperatures": None,
     "profile": "iso",
     "slices": "41",
     "coupled": False,
@@ -317,17 +316,6 @@ def read_law(chosen: Mapping[str, Any], family: Family, problems: list[str]) -> 
     return law, damper
 
 
-def ring_texts(arguments: argparse.Namespace) -> tuple[str | None, str | None]:
-    """Temperatures of the inner and the outer raceway as they were typed; None where they were not.
-
-    Parameters
-    ----------
-    arguments : Namespace
-        Options as they were parsed.
-    """
-    return arguments.inner_ring_temperature, arguments.outer_ring_temperature
-
-
 def read_rings(arguments: argparse.Namespace, chosen: Mapping[str, Any], problems: list[str]) -> tuple[float, float]:
     """Temperatures of the inner and the outer raceway [K], that of --temperature where they have none of their own.
 
@@ -340,15 +328,14 @@ def read_rings(arguments: argparse.Namespace, chosen: Mapping[str, Any], problem
     problems : list of str
         What is wrong; added to.
     """
-    around, given = float(chosen.get("temperature", CELSIUS_40)), ring_texts(arguments)
-    if "temperature" in chosen and None not in given:
+    around, given = float(chosen.get("temperature", CELSIUS_40)), arguments.ring_temperatures
+    if "temperature" in chosen and given is not None:
         problems.append(
-            f"--temperature: got {TEMPERATURE.text(around)} with --inner-ring-temperature and "
-            "--outer-ring-temperature; allowed: two of the three; it is that of a ring that has none"
+            f"--temperature: got {TEMPERATURE.text(around)} with --ring-temperatures; allowed: one of the two"
         )
     inner, outer = (
-        read_one(f"--{side}-ring-temperature", text, "K", OIL_TEMPERATURES, TEMPERATURE, around, problems)
-        for side, text in zip(SIDES, given, strict=True)
+        read_one("--ring-temperatures", text, "K", OIL_TEMPERATURES, TEMPERATURE, around, problems)
+        for text in given or (None, None)
     )
     return inner, outer
 
@@ -413,6 +400,53 @@ def read_oil(
         problems += [f"{option}: {problem}" for problem in error.problems]
         return None
     return oil
+
+
+def read_dielectric(text: str | None, problems: list[str]) -> Dielectric | None:
+    """The oil as a dielectric; None where none was given, or a problem was noted.
+
+    Parameters
+    ----------
+    text : str or None
+        A permittivity, or a table in braces.
+    problems : list of str
+        List that takes what is wrong.
+
+    Examples
+    --------
+    >>> read_dielectric('{ value = 2.2, at = "40 degC", outlet = "series" }', []).outlet
+    'series'
+    """
+    if text is None:
+        return None
+    from ehdmaps.electrics.dielectric import CONDUCTIVITIES, LARGEST, OUTLETS, Dielectric  # with what only it needs
+    from ehdmaps.jobs.table import Table, inline
+
+    option = "--permittivity"
+    value = inline(text, option, problems) if text.lstrip().startswith("{") else {"value": _number_or_text(text)}
+    if value is None:
+        return None
+    noted: list[str] = []
+    table = Table(value, option, noted)
+    permittivity = table.number("value", 1.0, LARGEST, required=True)
+    known_at = table.quantity("at", "K", *OIL_TEMPERATURES, TEMPERATURE)
+    conductivity = table.quantity("conductivity", "S/m", *CONDUCTIVITIES, Display("S/m"))
+    outlet = table.choice("outlet", OUTLETS)
+    gap = table.quantity("outer_gap", "m", 1e-7, 1e-2, MICROMETRE)
+    table.close()
+    problems += noted
+    if noted or permittivity is None:
+        return None
+    try:
+        return Dielectric(permittivity, known_at, conductivity, outlet or "parallel", gap)
+    except InputError as error:
+        problems += [f"{option}: {problem}" for problem in error.problems]
+        return None
+
+
+def _number_or_text(text: str) -> float | str:
+    """A number where the text is one."""
+    return float(text) if _is_number(text) else text
 
 
 def read_heat(chosen: Mapping[str, Any], oil: Lubricant | None, lack: str, problems: list[str]) -> bool:

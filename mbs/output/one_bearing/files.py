@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -47,7 +48,7 @@ def write_points(
     """
     dataset = point_dataset(kind, description, points)
     if Path(path).suffix.lower() == ".csv":
-        write_csv(kind, dataset, path)
+        write_csv(kind, kind.numbers_of(description), [dataset], path)
     else:
         for name, band in (bands or {}).items():
             from mbs.unknowns.bounds import with_bounds
@@ -79,7 +80,7 @@ def point_dataset(kind: Kind, description: Description, points: Points) -> xr.Da
 
     dims = ("load", "speed")
     variables: dict[str, Any] = {
-        **{name: (dims, values, about) for name, values, about in _of_rows(kind.numbers, rows)},
+        **{name: (dims, values, about) for name, values, about in _of_rows(kind.numbers_of(description), rows)},
         **{name: ((*dims, "contact"), values, about) for name, values, about in _of_rows(kind.sides, rows, _BOTH)},
         **{
             one.name: ((*dims, *one.dims), of_points(one), {"units": one.unit, "long_name": one.words})
@@ -155,15 +156,17 @@ def _of_rows(
     ]
 
 
-def write_csv(kind: Kind, dataset: xr.Dataset, path: str) -> None:
+def write_csv(kind: Kind, numbers: Sequence[Number], datasets: Sequence[xr.Dataset], path: str) -> None:
     """Write a row for each load and speed, in SI.
 
     Parameters
     ----------
     kind : Kind
         Kind of the bearing.
-    dataset : xarray.Dataset
-        Points of a bearing over load and speed.
+    numbers : sequence of Number
+        Single numbers of a point.
+    datasets : sequence of xarray.Dataset
+        Points of a bearing over load and speed, at one or more temperatures.
     path : str
         The file.
 
@@ -172,25 +175,27 @@ def write_csv(kind: Kind, dataset: xr.Dataset, path: str) -> None:
     InputError
         If it may not be replaced, or cannot be written.
     """
-    about = {key: value for key, value in dataset.attrs.items() if key != "warnings"}
+    first = datasets[0]
+    about = {key: value for key, value in first.attrs.items() if key != "warnings"}
+    if len(datasets) > 1:
+        about["temperature_K"] = "several, see the column"
     head = [
         f"# table {MARK}: one {kind.words} at operating points, SI",
         *(f"# {key}: {value}" for key, value in about.items()),
         *(f"# {old}: copy of {new}: the next release has no {old}" for old, new in kind.old_names.items()),
     ]
-    single = [*((number.name, number.unit) for number in kind.numbers)]
-    copies = [(old, dataset[old].attrs["units"]) for old in kind.old_names]
+    single = [*((number.name, number.unit) for number in numbers)]
+    copies = [(old, first[old].attrs["units"]) for old in kind.old_names]
     names = ["load [N]", "speed [rad/s]", *(f"{name} [{unit}]" for name, unit in single)]
     names += [f"{side.name}_{contact} [{side.unit}]" for side in kind.sides for contact in SIDES]
     lines = [*head, ",".join([*names, *(f"{name} [{unit}]" for name, unit in copies), "outside"])]
-    for i, load in enumerate(dataset["load"].values):
-        for j, speed in enumerate(dataset["speed"].values):
-            here = dataset.isel(load=i, speed=j)
-            numbers = [load, speed, *(float(here[name]) for name, _ in single)]
-            numbers += [float(here[side.name].sel(contact=contact)) for side in kind.sides for contact in SIDES]
-            numbers += [float(here[name]) for name, _ in copies]
-            # Quoted: the cause has commas.
-            cause = str(here["outside"].values).replace('"', "'")
-            fields = ["" if math.isnan(number) else f"{number:.9g}" for number in numbers]
-            lines.append(",".join([*fields, f'"{cause}"' if cause else ""]))
+    places = itertools.product(datasets, range(first.sizes["load"]), range(first.sizes["speed"]))
+    for here in (dataset.isel(load=i, speed=j) for dataset, i, j in places):
+        values = [float(here[name]) for name in ("load", "speed", *(name for name, _ in single))]
+        values += [float(here[side.name].sel(contact=contact)) for side in kind.sides for contact in SIDES]
+        values += [float(here[name]) for name, _ in copies]
+        # Quoted: the cause has commas.
+        cause = str(here["outside"].values).replace('"', "'")
+        fields = ["" if math.isnan(value) else f"{value:.9g}" for value in values]
+        lines.append(",".join([*fields, f'"{cause}"' if cause else ""]))
     write_text(path, "\n".join(lines) + "\n", TABLE)

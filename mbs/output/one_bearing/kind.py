@@ -22,6 +22,7 @@ from mbs.life import required_viscosity
 from mbs.output.state_text import HIGHEST_LOAD, LOADED
 
 if TYPE_CHECKING:
+    from ehdmaps.electrics.dielectric import Dielectric
     from mbs.unknowns.statement import Statement
 
 Points = Sequence[Sequence[Any]]
@@ -57,6 +58,10 @@ class Description:
         Temperatures of the raceways, and what they make of the clearance; None where both have `temperature`.
     known : tuple of Statement
         Statements on how well numbers are known.
+    dielectric : Dielectric or None
+        Oil as a dielectric; None where no electric numbers are asked for.
+    more : tuple of Number
+        Numbers that are asked for beside those of the kind.
     """
 
     law: str
@@ -71,6 +76,8 @@ class Description:
     oil: Lubricant | None = None
     state: BearingState | None = None
     known: tuple[Statement, ...] = ()
+    dielectric: Dielectric | None = None
+    more: tuple[Number, ...] = ()
 
 
 class Number(NamedTuple):
@@ -254,6 +261,10 @@ class Kind:
         """Curves that a figure shows of one point."""
         return self.curves_of(point) if self.curves_of else _around(self.element, point)
 
+    def numbers_of(self, description: Description) -> tuple[Number, ...]:
+        """Numbers of its points, with further ones that are asked for."""
+        return (*self.numbers, *description.more)
+
     @property
     def old_names(self) -> dict[str, str]:
         """Names of variables that each kind had for itself, and what they are copies of until the next release."""
@@ -408,7 +419,7 @@ def row_of(kind: Kind, description: Description, point: Any) -> dict[str, Any]:
         Point of the kind.
     """
     row: dict[str, Any] = {"load": point.size, "speed": point.inner_speed}
-    for number in kind.numbers:
+    for number in kind.numbers_of(description):
         row[number.name] = math.nan if point.failed else float(number.of(point, description))
     for number in kind.sides:
         row[number.name] = np.full(2, math.nan) if point.failed else number.of(point, description)

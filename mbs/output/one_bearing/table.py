@@ -118,8 +118,20 @@ def _page(kind: Kind, description: Description, point: Any) -> list[str]:
         ),
         lambda_line(row["film_parameter"], MICROMETRE.text(description.roughness))
         + kind.beside_lambda(point, description),
-        *(f"  {line}" for line in (*kind.closing(point, row), *_life(kind.element, point, row))),
+        *(
+            f"  {line}"
+            for line in (*kind.closing(point, row), *_electric(description, row), *_life(kind.element, point, row))
+        ),
     ]
+
+
+def _electric(description: Description, row: Row) -> list[str]:
+    """Lines on a bearing whose oil has a permittivity; none of others."""
+    if description.dielectric is None:
+        return []
+    from mbs.output.one_bearing.electric import electric_lines  # with what only they need
+
+    return electric_lines(description, row)
 
 
 def _life(element: str, point: Any, row: Row) -> list[str]:
@@ -165,6 +177,10 @@ def _loaded(kind: Kind, point: Any) -> list[str]:
 def _table(kind: Kind, description: Description, points: Sequence[Any]) -> list[str]:
     """A line for each point."""
     columns = [one for one in kind.columns if not (one.rough and description.surface.smooth)]
+    if description.dielectric is not None:
+        from mbs.output.one_bearing.electric import COLUMNS  # with what only they need
+
+        columns += COLUMNS
     heads = ([one.head for one in columns], [one.unit for one in columns])
     lines = [_joined(columns, words).rstrip() for words in heads]
     for point in points:
