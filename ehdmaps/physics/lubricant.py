@@ -537,7 +537,8 @@ class Lubricant:
         factor : float
             Factor of alpha at all temperatures.
         temperature : float
-            Temperature at which value and slope of a correlation are kept [K]; further away its curve is another.
+            Temperature at which value and slope are kept [K]; further away the curve is another where alpha is by a
+            correlation or by the numbers of its law, and that of the viscosity of FVA 3.
 
         Examples
         --------
@@ -547,17 +548,21 @@ class Lubricant:
         1.25
         """
         law: Any = self.pressure_viscosity
-        cold, hot = (getattr(law, f"pressure_viscosity_{celsius}", None) for celsius in (40, 100))
-        if self.correlation is not None:
-            before, here, after = (
-                float(self.at(temperature + step).pressure_viscosity.pressure_viscosity) for step in (-1.0, 0.0, 1.0)
-            )
+        if not hasattr(law, "pressure_viscosity_40"):
+            return None
+        cold, hot = law.pressure_viscosity_40, law.pressure_viscosity_100
+        viscosity = self.viscosity
+        if self.correlation is not None or cold is None or hot is None:
+            around = [self.at(temperature + step) for step in (-1.0, 0.0, 1.0)]
+            before, here, after = (float(each.pressure_viscosity.pressure_viscosity) for each in around)
             slope = 0.5 * math.log(after / before)
             cold, hot = (here * math.exp(slope * (ZERO_CELSIUS + end - temperature)) for end in (40.0, 100.0))
-        if cold is None or hot is None:
-            return None
+            if isinstance(viscosity, VogelViscosity):  # of named oils alone: no own oil has it
+                ends = zip((-1.0, 1.0), around[::2], strict=True)
+                cool, warm = ((temperature + step, each.viscosity / each.density) for step, each in ends)
+                viscosity = AstmViscosity.through(cool, warm)
         coefficients: dict[str, Any] = {"pressure_viscosity_40": factor * cold, "pressure_viscosity_100": factor * hot}
-        return replace(self, correlation=None, pressure_viscosity=replace(law, **coefficients))
+        return replace(self, correlation=None, viscosity=viscosity, pressure_viscosity=replace(law, **coefficients))
 
     def record(self) -> dict[str, float | str | bool]:
         """Everything that defines the oil, flat, for provenance; SI units; values not given are left out.

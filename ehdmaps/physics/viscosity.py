@@ -429,6 +429,27 @@ class AstmViscosity:
         if problems:
             raise InputError(problems)
 
+    @classmethod
+    def through(cls, first: tuple[float, float], second: tuple[float, float]) -> AstmViscosity:
+        """The law through two kinematic viscosities.
+
+        Parameters
+        ----------
+        first, second : (float, float)
+            Temperature [K] and kinematic viscosity [m2/s].
+
+        Examples
+        --------
+        >>> oil = AstmViscosity(100e-6, 11e-6)
+        >>> again = AstmViscosity.through((333.15, oil.at(333.15, 1.0)), (353.15, oil.at(353.15, 1.0)))
+        >>> round(again.viscosity_40 * 1e6, 6), round(again.viscosity_100 * 1e6, 6)
+        (100.0, 11.0)
+        """
+        logs = [(math.log10(temperature), _double_log(viscosity / _MM2)) for temperature, viscosity in (first, second)]
+        rise = (logs[1][1] - logs[0][1]) / (logs[1][0] - logs[0][0])
+        at = (logs[0][1] + rise * (math.log10(kelvin) - logs[0][0]) for kelvin in (_COLD_KELVIN, _HOT_KELVIN))
+        return cls(*(_MM2 * (10.0 ** (10.0**double) - 0.7) for double in at))
+
     @property
     def slope(self) -> float:
         """m = -d log10 log10(nu + 0.7)/d log10 T."""

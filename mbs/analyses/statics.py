@@ -69,13 +69,13 @@ class StaticsResult:
     @cached_property
     def bands(self) -> dict[str, Band]:
         """Bands of what is not known, by the names of variables of the data set; found when they are asked for."""
-        from mbs.unknowns.held_open import held_open
+        from mbs.unknowns.held_open import held_open_of
         from mbs.unknowns.of_variables import variable_bands
 
         def make(scene: Scene, standing: bool) -> dict[str, FloatArray]:
             return banded_variables(statics(self.model.again(scene), self.balance.operation).dataset)
 
-        return variable_bands(make, banded_variables(self.dataset), held_open(self.model.scene))
+        return variable_bands(make, banded_variables(self.dataset), held_open_of(self.model))
 
     def bounded(self) -> xr.Dataset:
         """The data set with these bounds."""

@@ -42,13 +42,14 @@ from mbs.model.system import System
 from mbs.output.files import described
 from mbs.output.model_text import clearance_text, common_supply, temperature_text
 from mbs.output.results import with_states
-from mbs.output.sweep_data import critical_dataset, sweep_dataset
+from mbs.output.sweep_data import LARGEST, critical_dataset, largest_responses, sweep_dataset
 from mbs.scene.assembly import Model, choice_attributes, law_attributes, laws_attributes
 from mbs.scene.scene import Scene
 from mbs.settings import CAGE_ANGLES, SweepRange
 
 if TYPE_CHECKING:
     from mbs.output.files import Figure
+    from mbs.unknowns.looks import Band
     from mbs.unknowns.over_speed import SpeedBands
 
 
@@ -345,24 +346,51 @@ class CriticalResult:
     findings: tuple[Finding, ...] = ()
 
     @cached_property
+    def bands(self) -> SpeedBands:
+        """Bands of what is not known of modes and of the largest responses; found when they are asked for."""
+        from mbs.unknowns.over_speed import Responses, bands_over_speed
+
+        highest = 1.05 * max((abs(entry.eigenvalue) for entry in self.found), default=0.0) / (2.0 * math.pi)
+        own = Responses(self._row(self.responses), self._row) if self.responses else None
+        return bands_over_speed(self.model, self.sweep, highest, own)
+
+    @cached_property
     def bounds(self) -> FloatArray:
         """Bounds of what is not known of the critical speeds [rad/s] and damping ratios there, shape (critical, 4).
 
         They are low and high speed, low and high ratio, 90 % of what is not known; found when they are asked for.
         """
-        from mbs.unknowns.over_speed import bands_over_speed, critical_bounds
+        from mbs.unknowns.over_speed import critical_bounds
 
-        if not self.found:
-            return np.zeros((0, 4))
-        highest = 1.05 * max(abs(entry.eigenvalue) for entry in self.found) / (2.0 * math.pi)
-        return critical_bounds(bands_over_speed(self.model, self.sweep, highest), self.sweep, self.found)
+        return critical_bounds(self.bands, self.sweep, self.found) if self.found else np.zeros((0, 4))
+
+    @property
+    def largest(self) -> Mapping[str, Band]:
+        """Bands of the largest responses over speed by their names in the data set; none without loads that turn."""
+        found, first = {}, 0
+        for name, values in self._largest(self.responses).items():
+            found[name] = self.bands.responses.of(first + np.arange(values.size).reshape(values.shape))
+            first += values.size
+        return found
+
+    def _largest(self, responses: Sequence[OrderResponse]) -> dict[str, FloatArray]:
+        """Largest responses over speed."""
+        return largest_responses(self.model.system, self.model.scene.sensors, self.speeds, responses)
+
+    def _row(self, responses: Sequence[OrderResponse]) -> FloatArray:
+        """All of them in one row."""
+        return np.concatenate([values.reshape(-1) for values in self._largest(responses).values()])
 
     def bounded(self) -> xr.Dataset:
-        """The data set with these bounds."""
-        from mbs.unknowns.bounds import with_sides
+        """The data set with these bounds, and with the largest responses over speed and theirs."""
+        from mbs.unknowns.bounds import with_bounds, with_sides
 
         speed, ratio = self.bounds[:, :2].T, self.bounds[:, 2:].T
-        return with_sides(with_sides(self.dataset, "critical_speed", *speed), "critical_damping_ratio", *ratio)
+        found = with_sides(with_sides(self.dataset, "critical_speed", *speed), "critical_damping_ratio", *ratio)
+        for name, own in self.largest.items():
+            dims, attributes = LARGEST[name]
+            found = with_bounds(found.assign({name: (dims, own.value, attributes)}), name, own)
+        return found
 
     def plot(self) -> Figure:
         """Figure that `mbs critical --plot` writes: modes with the orders, and the responses over speed."""

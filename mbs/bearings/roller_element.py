@@ -85,8 +85,8 @@ class RollerElement(RingElement):
         return self.plain.excitation
 
     def passed(self, part: float) -> Self:
-        """See `OnRings.passed`."""
-        return dataclasses.replace(self, plain=self.plain.passed(part))
+        """See `OnRings.passed`: itself, for a mean over cage angles makes one of a loaded roller and a free one."""
+        return self
 
     @property
     def felt_rows(self) -> FloatArray:

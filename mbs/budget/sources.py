@@ -28,7 +28,7 @@ from mbs.scene.map_set import TABLE_LAW
 from mbs.scene.scene import Scene
 from mbs.scene.subject import LawChoice, Subject, named_law
 from mbs.settings import CAGE_ANGLES
-from mbs.unknowns.held_open import clearance_of, held_open
+from mbs.unknowns.held_open import SUPPLIES, clearance_of, held_open
 from mbs.unknowns.unknown import Unknown
 
 FREQUENCY, DAMPING, HEIGHT, LOAD = "frequency", "damping ratio", "response peak", "contact load"
@@ -38,9 +38,6 @@ LINEAR = (Judged(FREQUENCY), Judged(DAMPING), Judged(HEIGHT, "dB"), Judged(LOAD)
 
 DAMPER = "hertz:1.25e-5 s"
 """A dry contact with the damper in the middle of the usual range."""
-
-SUPPLIES = ("flooded", "oil bath", "oil air", "grease")
-
 
 ROUGH = Surface(2e-7)
 """A surface in place of a smooth one."""
@@ -139,7 +136,7 @@ def model_sources(base: Subject, choices: Sequence[Choice]) -> list[Source]:
     return [
         Source("films, their stiffness and damping", law_label("hertz"), memory),
         Source("film memory", f"{base.law.label}, slow films", memory),
-        *(Source(f"oil supply: {text}", text) for text in SUPPLIES[1:]),
+        *(Source(f"oil supply: {text}", text) for text in SUPPLIES),
         *(Source(label, label) for label in dict.fromkeys(one.label for one in choices if one.group in open_groups)),
     ]
 
@@ -248,7 +245,7 @@ def _supplies(base: Subject) -> Iterator[Tried]:
     if base.scene.has_points:  # whose films are flooded
         return
     given, group = set(base.model().supplies.values()), Group("oil supply", base)
-    for text in SUPPLIES:
+    for text in ("flooded", *SUPPLIES):
         supply = supply_from_text(text)
         same = given == {supply}
         subject = base if same else dataclasses.replace(base, law=dataclasses.replace(base.law, supply=supply))

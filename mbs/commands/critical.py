@@ -24,11 +24,12 @@ from mbs.commands.lsa import MOST_COMPARED_CASES
 from mbs.commands.sweep import read_speeds
 from mbs.linearised.critical import CriticalSpeed
 from mbs.linearised.linear import sensor_unit
-from mbs.output.band_text import HEAD, LOPSIDED, about_lines, deserved
+from mbs.output.band_text import HEAD, LOPSIDED, about_lines, bounds_text, deserved, term_words
 from mbs.output.model_text import clean, heading
 from mbs.output.reduction_text import reduction_lines
 from mbs.output.sweep_data import orbits, sensed
 from mbs.planning.question import over_speeds
+from mbs.unknowns.held_open import held_open_of
 
 _HEAD = "critical speeds      order       speed   frequency/Hz   damping ratio   whirl"
 _WIDTH = 102
@@ -113,7 +114,7 @@ def _report(found: CriticalResult, label: str, banded: bool) -> list[str]:
         *([f"  case: {label}"] if label else []),
         f"  {swept.size} speeds from {_rpm(swept[0])} to {_rpm(np.abs(swept).max())}, {more} more around critical ones",
         *([] if label else _critical(found, banded)),
-        *_responses(found),
+        *_responses(found, banded and not label),
         *_reduction(found),
         *fade_lines(model, swept),
     ]
@@ -155,7 +156,11 @@ def _critical(result: CriticalResult, banded: bool) -> list[str]:
         [_band_row(entry, bounds) for entry, bounds in zip(result.found, result.bounds, strict=True)] if banded else []
     )
     if bands:
-        bands = [f"  {HEAD:36s} speed                  damping ratio", *bands, *about_lines(result.model.scene)]
+        bands = [
+            f"  {HEAD:36s} speed                  damping ratio",
+            *bands,
+            *about_lines(result.model.scene, held_open_of(result.model), result.bands.told),
+        ]
     return [_HEAD, *map(_row, result.found), *bands]
 
 
@@ -193,25 +198,38 @@ def _whirl_words(whirl: float) -> str:
     return f"{'forward' if whirl > 0.0 else 'backward'} ({whirl:+.2f})"
 
 
-def _responses(result: CriticalResult) -> list[str]:
-    """Largest responses of each order: orbits, sensors, forces of elements."""
+def _responses(result: CriticalResult, banded: bool) -> list[str]:
+    """Largest responses of each order: orbits, sensors, forces of elements, with their bands."""
     lines = []
     system, sensors = result.model.system, result.model.scene.sensors
-    for response in result.responses:
+    bands = result.largest if banded else {}
+
+    def reach(name: str, place: tuple[int, int], factor: float) -> str:
+        """Words on the band of a response, and on what decides it."""
+        own = bands.get(name)
+        if own is None or not own.value[place]:
+            return ""
+        one = own.of(place).scaled(factor).of(None)
+        return f"; {bounds_text(one, 0)}, decided by {term_words(one.largest(0)) or 'nothing'}"
+
+    if bands and result.responses:
+        lines.append(f"  beside largest responses {HEAD}, in their units")
+    for row, response in enumerate(result.responses):
         lines.append(f"order {response.order:.4g} ({', '.join(response.names)}), largest over the speeds:")
         places, axes = orbits(system, response)
         for index, place in enumerate(places):
             worst = int(np.argmax(axes[:, index, 0]))
             lines.append(
                 f"  orbit of {place}: {axes[worst, index, 0] * 1e6:.4g} by {abs(axes[worst, index, 1]) * 1e6:.4g} um "
-                f"(semi-axes) at {_rpm(result.speeds[worst])}"
+                f"(semi-axes) at {_rpm(result.speeds[worst])}{reach('orbit_largest', (row, index), 1e6)}"
             )
         seen = np.abs(sensed(system, sensors, result.speeds, response))
         for index, sensor in enumerate(sensors):
             worst = int(np.argmax(seen[:, index]))
+            shown = MOTIONS[sensor_unit(sensor)]
             lines.append(
-                f"  sensor {sensor.name}: {MOTIONS[sensor_unit(sensor)].text(seen[worst, index])} at "
-                f"{_rpm(result.speeds[worst])}"
+                f"  sensor {sensor.name}: {shown.text(seen[worst, index])} at {_rpm(result.speeds[worst])}"
+                f"{reach('response_largest', (row, index), shown.factor)}"
             )
         for index, connected in enumerate(system.elements):
             force = result.dataset["element_force"].sel(order=response.order).values[:, index]
@@ -219,5 +237,6 @@ def _responses(result: CriticalResult) -> list[str]:
             if force[worst] > 0.0:
                 lines.append(
                     f"  force of {connected.element.name}: {written(force[worst])} N at {_rpm(result.speeds[worst])}"
+                    f"{reach('element_force_largest', (row, index), 1.0)}"
                 )
     return lines

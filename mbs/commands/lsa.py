@@ -35,6 +35,7 @@ from mbs.output.reduction_text import reduction_lines
 from mbs.output.state_space_file import write_spaces
 from mbs.planning.question import at_one_speed
 from mbs.scene.assembly import Model
+from mbs.unknowns.held_open import held_open_of
 from mbs.unknowns.of_peaks import PeakBands
 
 MOST_COMPARED_CASES = 8
@@ -151,7 +152,8 @@ def _peak_bands(model: Model, found: LsaResult) -> list[str]:
             heads = f"peaks: frequency/Hz, {HEAD}; size, 90 %; level {DECIDED}"
             lines += [begin + heads, *rows] if rows else [begin + "no peak"]
     names = [f"peak {k + 1}" for k in range(bands.places.shape[0])]
-    return [*lines, *lost_lines(bands.frequency, names), *about_lines(model.scene)]
+    told = {"frequency of peaks": bands.frequency, "level": bands.level}
+    return [*lines, *lost_lines(bands.frequency, names), *about_lines(model.scene, held_open_of(model), told)]
 
 
 def _ends(bands: PeakBands) -> tuple[FloatArray, FloatArray]:

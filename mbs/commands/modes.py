@@ -35,6 +35,7 @@ from mbs.scene.assembly import Model
 from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.scene.scene import Scene
 from mbs.settings import HIGHEST_HIGHEST, LOWEST_HIGHEST
+from mbs.unknowns.held_open import held_open_of
 
 HIGHEST = 10e3
 """Highest frequency shown of a scene that asks for no responses [Hz]."""
@@ -65,7 +66,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *heading(model, model.scene.speed),
         *(_table(found, shown) if bands is None else mode_lines(found, shown, bands)),
         *([f"  {OTHER_DAMPING}"] if np.any(found.damping_ratio[shown] < LITTLE_DAMPING) else []),
-        *(about_lines(model.scene) if bands is not None else []),
+        *(about_lines(model.scene, held_open_of(model), bands.told) if bands is not None else []),
         *band_lines(model, 0.0 if found.bands is None else found.bands.film_share, bands is not None),
         *(film_law_line(model, found.film_law is not None) if bands is None else []),
         *reduction_lines(

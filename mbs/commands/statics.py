@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,6 +28,10 @@ from mbs.output.model_text import heading
 from mbs.output.state_text import DAMPINGS, STIFFNESSES, flooded_note, largest_torque, life_lines, loss_words
 from mbs.planning.question import at_one_speed
 from mbs.scene.assembly import Model, ring_motions
+from mbs.unknowns.held_open import held_open_of
+
+if TYPE_CHECKING:
+    from mbs.unknowns.looks import Band
 
 _SHOWN = (1, 2, 4, 5)
 _ROUND_OFF = 1e-9
@@ -80,7 +86,10 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         lines += gear_lines(model, balance)
     if bands:
         names = [str(name) for name in found.dataset["bearing"].values]
-        lines += [*quantity_lines(list(bearing_quantities(names, bands))), *about_lines(model.scene)]
+        lines += [
+            *quantity_lines(list(bearing_quantities(names, bands))),
+            *about_lines(model.scene, held_open_of(model), _told(bands)),
+        ]
         lines += [line for line in lost_lines(next(iter(bands.values())), []) if "not in the bands" in line]
     lines += flooded_note(largest_torque(found.losses), model.supplies.values())
     lines += _slow(model, balance) if model.supplies or others else []
@@ -89,6 +98,17 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines += [*judged.last, *(f"warning: {line}" for line in found.free), *outside]
     lines += write(arguments, (found.bounded() if bands else found.dataset) if arguments.output else None, figure)
     return "\n".join(lines), 1 if outside or judged.status else 0
+
+
+def _told(bands: Mapping[str, Band]) -> dict[str, Band]:
+    """Bands of K and C along the axes, and of films, by what they are of."""
+    axes = np.arange(6)
+    shown = {"K": "bearing_stiffness", "C": "bearing_damping", "film": "minimum_film"}
+    return {
+        words: bands[name] if words == "film" else bands[name].of((slice(None), axes, axes))
+        for words, name in shown.items()
+        if name in bands
+    }
 
 
 def _slow(model: Model, balance: Equilibrium) -> list[str]:

@@ -41,6 +41,7 @@ from mbs.planning.question import over_speeds
 from mbs.scene.assembly import Model
 from mbs.scene.scene import Scene
 from mbs.settings import MOST_SPEEDS, ROUND_OFF, SweepRange
+from mbs.unknowns.held_open import held_open_of
 from mbs.unknowns.over_speed import SpeedBands
 
 _LEAST_SHARE = 0.05
@@ -310,7 +311,7 @@ def _complex_bands(result: Sweep, bands: SpeedBands, model: Model) -> list[str]:
         ]
         at_speed = RPM.text(float(result.speeds[place]))
         lines += [f"  at {at_speed}, {HEAD}: frequency/Hz, damping ratio; frequency {DECIDED}", *rows] if rows else []
-    return [*lines, *about_lines(model.scene)] if lines else []
+    return [*lines, *about_lines(model.scene, held_open_of(model), bands.told)] if lines else []
 
 
 def _responses(result: Sweep) -> list[str]:

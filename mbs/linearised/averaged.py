@@ -117,7 +117,8 @@ def mean_equilibrium(
 def over_pitch(balance: Equilibrium, count: int) -> tuple[Equilibrium, ...]:
     """Equilibria at several angles within one pitch of the rollers, the first of them the given one.
 
-    Each cage goes on by equal parts of its own pitch, so that all are seen evenly, however fast they turn.
+    Each cage goes on by equal parts of its own pitch, so that all are seen evenly, however fast they turn. Cages whose
+    rollers are bodies stand; where no other is there, one equilibrium is all.
 
     Parameters
     ----------
@@ -133,10 +134,12 @@ def over_pitch(balance: Equilibrium, count: int) -> tuple[Equilibrium, ...]:
     """
     system, operation = balance.system, balance.operation
     equilibria = [balance]
-    for part in range(1, count):
-        passed: list[Any] = [connected.element for connected in system.elements]
-        for index in system.select(OnRings):
-            passed[index] = passed[index].passed(part / count)
+    elements: list[Any] = [connected.element for connected in system.elements]
+    turning = [index for index in system.select(OnRings) if elements[index].passed(0.5) is not elements[index]]
+    for part in range(1, count if turning else 1):
+        passed = list(elements)
+        for index in turning:
+            passed[index] = elements[index].passed(part / count)
         equilibria.append(equilibrium(system.with_elements(passed), operation, equilibria[-1].displacement))
     return tuple(equilibria)
 

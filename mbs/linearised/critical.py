@@ -40,6 +40,9 @@ _UNDAMPED = 1e-9
 """Damping ratio up to which a mode has no finite response at its critical speed, to rounding."""
 
 _EVALUATIONS = 12
+_NARROWED = 3
+"""Times that speeds about a resonance are drawn closer."""
+
 _WIDEST = 0.1
 
 
@@ -98,6 +101,8 @@ class OrderResponse:
         [N].
     lifted : tuple of tuple of str, (speeds, bearings)
         What they are loads of.
+    speeds : array, shape (speeds,), or None
+        Speeds [rad/s], where they are the response's own.
     """
 
     order: float
@@ -106,6 +111,7 @@ class OrderResponse:
     forces: ComplexArray
     lifting: FloatArray
     lifted: tuple[tuple[str, ...], ...]
+    speeds: FloatArray | None = None
 
 
 def critical_speeds(
@@ -196,13 +202,10 @@ def order_responses(
         system, start = balance.system, balance.displacement
         rules = [(index, lifting(balance, index)) for index in system.select(OnRings)]
         lifted.append(tuple(rule.of for _, rule in rules))
-        for order in sorted({abs(load.order) for load in system.turning}):
+        for order in _orders(system):
             loads = [load for load in system.turning if abs(load.order) == order]
-            size = np.sum([load.amplitude(speed) for load in loads], axis=0)
-            rate = np.array([1j * order * speed])
-            moved = np.linalg.solve(dynamic_stiffness(balance, rate)[0], size)
+            moved, felt = _answer([(1.0, balance)], order, speed)
             motions.setdefault(order, []).append(moved)
-            felt = _forces(balance, rate, moved)
             forces.setdefault(order, []).append(np.array([force[1:3] for force in felt]).reshape(-1, 2))
             lifts.setdefault(order, []).append([rule.worst(felt[index]) for index, rule in rules])
             names.setdefault(order, {}).update(dict.fromkeys(name for load in loads for name in load.names))
@@ -217,6 +220,71 @@ def order_responses(
         )
         for order in motions
     )
+
+
+def _orders(system: System) -> list[float]:
+    """Orders of the loads that turn, rising."""
+    return sorted({abs(load.order) for load in system.turning})
+
+
+def _answer(
+    parts: Sequence[tuple[float, Equilibrium]], order: float, speed: float
+) -> tuple[ComplexArray, list[ComplexArray]]:
+    """Motion (n,) by all loads of an order, and forces of all elements, of a dynamic stiffness that has parts."""
+    loads = [load for load in parts[0][1].system.turning if abs(load.order) == order]
+    size = np.sum([load.amplitude(speed) for load in loads], axis=0)
+    rate = np.array([1j * order * speed])
+    matrix = np.sum([share * dynamic_stiffness(balance, rate)[0] for share, balance in parts], axis=0)
+    moved = np.linalg.solve(matrix, size)
+    felt = [[share * force for force in _forces(balance, rate, moved)] for share, balance in parts]
+    return moved, [np.sum(each, axis=0) for each in zip(*felt, strict=True)]
+
+
+def responses_between(
+    balances: Sequence[Equilibrium], speeds: FloatArray, crossings: Sequence[tuple[float, float, float]]
+) -> tuple[OrderResponse, ...]:
+    """Respond to the loads that turn by equilibria at few speeds: what lies between them is linear in the speed.
+
+    That is exact of inertia and gyroscopic terms. Loads that lift contacts off are not looked at.
+
+    Parameters
+    ----------
+    balances : sequence of Equilibrium
+        Equilibria at rising speeds.
+    speeds : array, shape (speeds,)
+        Speeds between the first and the last of them [rad/s].
+    crossings : sequence of (float, float, float)
+        Orders, speeds [rad/s] and damping ratios about which a resonance is sought: the largest motion there is one
+        speed more.
+
+    Returns
+    -------
+    tuple of OrderResponse
+        One for each order; each has speeds of its own, in no order.
+    """
+    known = np.array([balance.operation.speed for balance in balances])
+
+    def answer(order: float, speed: float) -> tuple[ComplexArray, list[ComplexArray]]:
+        shares = [float(np.interp(speed, known, row)) for row in np.eye(known.size)]
+        there = [(share, balance) for share, balance in zip(shares, balances, strict=True) if share]
+        return _answer(there, order, speed)
+
+    responses = []
+    for order in _orders(balances[0].system):
+        found = [(speed, *answer(order, speed)) for speed in speeds.tolist()]
+        for crossing, ratio in ((speed, ratio) for of, speed, ratio in crossings if of == order):
+            place, wide = crossing, min(max(ratio, _UNDAMPED), _WIDEST)
+            for _ in range(_NARROWED):
+                tried = np.clip(place * (1.0 + wide * np.array(AROUND)), known[0], known[-1])
+                around = [(speed, *answer(order, speed)) for speed in np.unique(tried).tolist()]
+                best = max(around, key=lambda one: float(np.linalg.norm(one[1])))
+                place, wide = best[0], 0.25 * wide
+            found.append(best)
+        motion = np.array([moved for _, moved, _ in found])
+        forces = np.array([[force[1:3] for force in felt] for _, _, felt in found]).reshape(len(found), -1, 2)
+        at = np.array([speed for speed, _, _ in found])
+        responses.append(OrderResponse(order, (), motion, forces, np.zeros((len(found), 0, 2)), (), at))
+    return tuple(responses)
 
 
 def with_critical(speeds: FloatArray, found: Sequence[CriticalSpeed]) -> FloatArray:

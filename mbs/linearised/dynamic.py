@@ -26,6 +26,7 @@ find, or that it finds elsewhere, is lost, with the reason: it is in no result.
 
 from __future__ import annotations
 
+import dataclasses
 import enum
 import math
 from collections.abc import Iterable
@@ -39,8 +40,8 @@ from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.relaxation import Relaxation
 
-TOLERANCE = 1e-8
-"""Error of F on the frequency axis, as a part of F(0)."""
+TOLERANCE, COARSE = 1e-8, 1e-4
+"""Error of F on the frequency axis, as a part of F(0): of results, and of looks that change them by some per cent."""
 
 _MOST_POLES = 16
 _FREQUENCIES = 61
@@ -59,11 +60,14 @@ class FilmStates:
         Orthonormal columns: forces of the many, in the roots of their springs, by those of the few.
     slowest : float
         Longest time of the many [s].
+    tolerance : float
+        Error of F on the frequency axis, as a part of F(0).
     """
 
     relaxation: Relaxation
     lift: FloatArray
     slowest: float = 0.0
+    tolerance: float = TOLERANCE
 
     @property
     def size(self) -> int:
@@ -71,7 +75,7 @@ class FilmStates:
         return self.relaxation.times.size
 
 
-def film_states(relaxation: Relaxation, highest: float = math.inf) -> FilmStates:
+def film_states(relaxation: Relaxation, highest: float = math.inf, tolerance: float = TOLERANCE) -> FilmStates:
     """Reduce springs in series with dampers to few that act alike.
 
     Parameters
@@ -80,6 +84,8 @@ def film_states(relaxation: Relaxation, highest: float = math.inf) -> FilmStates
         All of them, in ports that are few.
     highest : float
         Frequency up to which they do [rad/s].
+    tolerance : float
+        Error of F on the frequency axis, as a part of F(0).
     """
     rows, times = relaxation.rows, relaxation.times
     if not np.any(rows):
@@ -95,14 +101,14 @@ def film_states(relaxation: Relaxation, highest: float = math.inf) -> FilmStates
         few = space.T @ (times[:, None] * space)
         few_times, turned = np.linalg.eigh(0.5 * (few + few.T))
         error = np.abs(_transfer((begin.T @ space @ turned).T, few_times, omega) - exact).max(axis=(1, 2))
-        if error.max() <= TOLERANCE or space.shape[1] >= times.size or poles == _MOST_POLES:
+        if error.max() <= tolerance or space.shape[1] >= times.size or poles == _MOST_POLES:
             break
         place = omega[int(np.argmax(error))] * times
         seen = begin / (1.0 + place**2)[:, None]
         space = _extended(space, np.hstack([seen, place[:, None] * seen]))
     lift = space @ turned
     slowest = float(times[np.any(rows != 0.0, axis=1)].max())
-    return FilmStates(Relaxation(lift.T @ begin @ ports, few_times), lift, slowest)
+    return FilmStates(Relaxation(lift.T @ begin @ ports, few_times), lift, slowest, tolerance)
 
 
 def together(parts: Iterable[FilmStates]) -> FilmStates | None:
@@ -113,7 +119,8 @@ def together(parts: Iterable[FilmStates]) -> FilmStates | None:
     rows = np.concatenate([part.relaxation.rows for part in given])
     times = np.concatenate([part.relaxation.times for part in given])
     lift = np.asarray(block_diag(*(part.lift for part in given)), dtype=np.float64)
-    return FilmStates(Relaxation(rows, times), lift, max(part.slowest for part in given))
+    slowest, tolerance = (max(getattr(part, name) for part in given) for name in ("slowest", "tolerance"))
+    return FilmStates(Relaxation(rows, times), lift, slowest, tolerance)
 
 
 def _transfer(rows: FloatArray, times: FloatArray, omega: FloatArray) -> FloatArray:
@@ -198,10 +205,10 @@ def dynamic_slope(balance: Equilibrium, s: ComplexArray) -> ComplexArray:
     return np.asarray(slope, dtype=np.complex128)
 
 
-def system_film_states(balance: Equilibrium) -> FilmStates | None:
+def system_film_states(balance: Equilibrium, tolerance: float = TOLERANCE) -> FilmStates | None:
     """The relaxing films of all elements as few states in the coordinates of the system; None without any.
 
-    They hold up to ten times the highest undamped frequency of slow motion.
+    They hold up to ten times the highest undamped frequency of slow motion, within a part of the films.
     """
     states = []
     relaxing = relaxing_elements(balance)
@@ -210,8 +217,8 @@ def system_film_states(balance: Equilibrium) -> FilmStates | None:
         squares = eigh(stiffness, balance.system.mass, eigvals_only=True)
         highest = _BEYOND * float(np.sqrt(max(squares[-1], 0.0)))
     for transform, relaxation in relaxing:
-        few = film_states(relaxation, highest)
-        states.append(FilmStates(few.relaxation.seen_by(transform), few.lift, few.slowest))
+        few = film_states(relaxation, highest, tolerance)
+        states.append(dataclasses.replace(few, relaxation=few.relaxation.seen_by(transform)))
     return together(states)
 
 
@@ -224,8 +231,9 @@ def relaxing_elements(balance: Equilibrium) -> list[tuple[FloatArray, Relaxation
     ]
 
 
-SMALL = 1e-6
-"""Change of an eigenvalue, as a part of it, up to which its first order is enough."""
+_SMALL = 1e-2
+"""Change of an eigenvalue, as a part of it and of the root of the films' error, up to which its first order does: what
+is left is a ten-thousandth of that error."""
 
 FARTHEST = 0.05
 """Change of an eigenvalue, as a part of it, above which another mode was found."""
@@ -299,7 +307,7 @@ def at_own_frequency(
         return OwnFrequency(values, np.ones(values.shape, dtype=np.bool_), ())
     change = _first_order(balance, films, eigenvalues, right, left)
     reasons: dict[int, Reason] = {}
-    searched = np.flatnonzero(~(np.abs(change) <= SMALL * np.abs(values)))
+    searched = np.flatnonzero(~(np.abs(change) <= _SMALL * math.sqrt(films.tolerance) * np.abs(values)))
     start = values.copy()
     values += change
     for k in searched.tolist():

@@ -312,7 +312,7 @@ class OnRings(ElementDefaults):
     def passed(self, part: float) -> OnRings:
         """The same bearing, its cage further on by a part of the pitch of its rolling elements.
 
-        Itself where no cage turns.
+        Itself where no cage turns, and where rolling elements have coordinates, which belong to one place.
 
         Parameters
         ----------

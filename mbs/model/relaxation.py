@@ -74,6 +74,12 @@ class Relaxation:
     def _summed(self, weights: ComplexArray) -> ComplexArray:
         """Sum of v v' with weights (k, r), shape (k, m, m)."""
         m = self.rows.shape[1]
+        if weights.shape[0] < m:  # all products of rows are dearer than a few sums
+            sums = np.empty((weights.shape[0], m, m), dtype=np.complex128)
+            for own, weight in zip(sums, weights, strict=True):
+                own.real = (self.rows.T * weight.real) @ self.rows
+                own.imag = (self.rows.T * weight.imag) @ self.rows
+            return sums
         products = (self.rows[:, :, None] * self.rows[:, None, :]).reshape(-1, m * m)
         return np.asarray((weights @ products).reshape(-1, m, m), dtype=np.complex128)
 

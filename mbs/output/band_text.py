@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from mbs.linearised.modes import Modes
     from mbs.unknowns.looks import Band, Term
     from mbs.unknowns.of_modes import ModeBands
+    from mbs.unknowns.unknown import Unknown
 
 HEAD = "90 % of what is not known"
 """Heading of bounds."""
@@ -119,15 +120,40 @@ def exact_text(band: Band, place: int, relative: str = "") -> str:
     return f"{term_words(terms)}; {bounds_text(band.without(terms[0].group), place)}"
 
 
-def about_lines(scene: Scene) -> list[str]:
-    """A line on what bands do not hold of a scene; what they hold is in the head of a result.
+def about_lines(scene: Scene, unknowns: Sequence[Unknown], bands: Mapping[str, Band] | None = None) -> list[str]:
+    """Lines on what alternatives change, and on what bands do not hold; what they hold is in the head of a result.
 
     Parameters
     ----------
     scene : Scene
         The scene.
+    unknowns : sequence of Unknown
+        What is held open of it.
+    bands : mapping of str to Band
+        Bands by what these are of, in words, for what alternatives change.
     """
-    return [f"  {HEAD}: what the head says is held open; {missing_words(scene)}"] if scene.has_bearings else []
+    if not scene.has_bearings:
+        return []
+    lines = [f"  {HEAD}: what the head says is held open; {missing_words(scene, unknowns)}"]
+    held = {one.name: one.held for one in unknowns}
+    changes: dict[str, list[str]] = {}
+    for name, band in (bands or {}).items():
+        for term in band.beside:
+            changes.setdefault(term.name, []).append(f"{name} {_changes(band, term)}")
+    return [f"  {name} {held.get(name, '')}: {', '.join(parts)}" for name, parts in changes.items()] + lines
+
+
+def _changes(band: Band, term: Term) -> str:
+    """Range of the changes of values by an alternative, in parts of them; of levels in dB."""
+    change = term.rise - term.fall
+    level = band.signed is not None and bool(np.all(band.signed))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        parts = np.atleast_1d(change if level else 100.0 * change / np.abs(band.value))
+    known = parts[np.isfinite(parts)]
+    if not known.size:
+        return "not known"
+    low, high = (f"{end:+.2g}" for end in (known.min(), known.max()))
+    return f"{low if low == high else f'{low} to {high}'} {'dB' if level else '%'}"
 
 
 def lost_lines(band: Band, names: Sequence[str]) -> Iterator[str]:

@@ -89,7 +89,8 @@ def common_supply(models: Iterable[Model]) -> str:
 
 def heading(model: Model, speed: float | None = None) -> list[str]:
     """Tell what was analysed, and which of its numbers are assumptions."""
-    from mbs.unknowns.words import open_lines  # analyses take words from here, and no heading
+    from mbs.unknowns.held_open import held_open_of  # analyses take words from here, and no heading
+    from mbs.unknowns.words import open_lines
 
     at = "" if speed is None else f"{RPM.text(speed)}, "
     state = f"{at}{temperature_text(model)}, clearance {clearance_text(model) or 'none'}, {weight_text(model)}"
@@ -100,12 +101,17 @@ def heading(model: Model, speed: float | None = None) -> list[str]:
         f"{model.scene.title}: law {model.law}",
         f"  {state}{''.join(chosen)}{f'; assumed: {assumed}' if assumed else ''}",
         *class_lines(model.scene),
-        *open_lines(model.scene),
+        *open_lines(held_open_of(model)),
         *_estimated(model),
         *(
             f"  the weight of {name} is left out: its finite elements are held themselves, so that it bears on no "
             "other body"
             for name in model.system.weightless
+        ),
+        *(
+            f"  rollers of {entry.name} are bodies: linear analyses have its cage where it starts, no mean over angles"
+            for entry in model.scene.bearings
+            if entry.rollers_as_bodies
         ),
         *state_lines(model.states),
         *model.warnings,

@@ -251,6 +251,49 @@ def orbits(system: System, response: OrderResponse) -> tuple[tuple[str, ...], Fl
     return tuple(places), np.moveaxis(np.array(axes).reshape(len(places), 2, -1), -1, 0)
 
 
+LARGEST = {
+    "orbit_largest": (("order", "place"), {"units": "m", "long_name": "largest semi-axis of the orbit over speed"}),
+    "response_largest": (
+        ("order", "sensor"),
+        {"units": _RESPONSE_UNITS, "long_name": "largest amplitude of the sensor over speed"},
+    ),
+    "element_force_largest": (
+        ("order", "element"),
+        {"units": "N", "long_name": "largest radial force over speed, without its mean"},
+    ),
+}
+"""Dimensions and attributes of the largest responses over speed, which have bands."""
+
+
+def largest_responses(
+    system: System, sensors: Sequence[Sensor], speeds: FloatArray, responses: Sequence[OrderResponse]
+) -> dict[str, FloatArray]:
+    """Largest responses over speed by the names of `LARGEST`, shape (orders, places, sensors or elements).
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    sensors : sequence of Sensor
+        What is sensed.
+    speeds : array, shape (speeds,)
+        Speeds of responses that have none of their own [rad/s].
+    responses : sequence of OrderResponse
+        One an order.
+    """
+    found: dict[str, list[FloatArray]] = {}
+    for one in responses:
+        at = speeds if one.speeds is None else one.speeds
+        sizes = (
+            orbits(system, one)[1][..., 0],
+            np.abs(sensed(system, sensors, at, one)),
+            orbit(one.forces[..., 0], one.forces[..., 1])[0],
+        )
+        for name, size in zip(LARGEST, sizes, strict=True):
+            found.setdefault(name, []).append(size.max(axis=0))
+    return {name: np.array(rows) for name, rows in found.items()}
+
+
 def critical_dataset(
     system: System,
     sensors: Sequence[Sensor],

@@ -26,6 +26,7 @@ from mbs.output.model_text import band_lines, clean, film_law_line, film_lines, 
 from mbs.output.reduction_text import reduction_lines
 from mbs.output.result_text import kinds
 from mbs.scene.fields import HERTZ
+from mbs.unknowns.held_open import held_open_of
 
 MOST = 60
 """Modes that are listed."""
@@ -111,7 +112,10 @@ def _banded_table(found: ModesResult, listed: IntArray, highest: float) -> Marku
         decided = "-" if place is None else term_words(bands.frequency.largest(place))
         rows.append((f"{k + 1}", *cells, decided, share_words(found.modes, k)))
     heads = ("mode", "frequency, Hz", "90 %", "damping ratio", "90 %", "frequency decided by", "strain energy")
-    lines = [*about_lines(found.model.scene), *lost_lines(bands.frequency, [f"mode {k + 1}" for k in bands.chosen])]
+    lines = [
+        *about_lines(found.model.scene, held_open_of(found.model), bands.told),
+        *lost_lines(bands.frequency, [f"mode {k + 1}" for k in bands.chosen]),
+    ]
     if not listed.size:
         return tag("p", f"No mode oscillates below {shown(HERTZ, highest)}.")
     words = "Complex modes; the frequency is |eigenvalue|/(2π); 90 % of what is not known of the machine"

@@ -39,6 +39,7 @@ from mbs.scene.assembly import ring_motions
 from mbs.scene.contact_laws import supply_words
 from mbs.scene.fields import FORCE, HERTZ
 from mbs.scene.oils import by_oil
+from mbs.unknowns.held_open import held_open_of
 from mbs.unknowns.words import open_words
 
 
@@ -130,7 +131,7 @@ def machine(found: Examination) -> Markup:
         *([("oil supply", typeset(supply_words(model.supplies)))] if model.supplies else []),
         *([("surfaces", typeset(model.surface.label))] if model.surface else []),
         *([("assumed", assumed)] if (assumed := assumed_words(scene)) else []),
-        *(("" if k else "held open", typeset(line)) for k, line in enumerate(open_words(scene))),
+        *(("" if k else "held open", typeset(line)) for k, line in enumerate(open_words(held_open_of(model)))),
     ]
     bearings = [
         (

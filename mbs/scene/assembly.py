@@ -299,6 +299,11 @@ class Model:
         return dataclasses.replace(model, chosen=self.chosen)
 
     @property
+    def has_films(self) -> bool:
+        """Tell whether its law has films, of some bearing at least."""
+        return bool(self.supplies) or any(entry.films is not None for entry in self.located)
+
+    @property
     def warnings(self) -> list[str]:
         """Warnings of every analysis about the machine and its law: oils that contradict each other."""
         return oil_warnings(self.oils, self.scene.lubricant)

@@ -9,13 +9,15 @@ clearance, stated      5 um                    k5 in a ring of class P0: 2 to 25
 temperature            5 K, all together       assumed
 viscosity, of a class  10 %, all together      ISO 3448
 pressure-viscosity     25 % of a correlation,  So and Klaus: 17 % rms, 10 % of it too high; that of a correlation
-                       10 % where stated       through a stated value by what other correlations have
+                       10 % where stated       through a stated value by what other correlations have; FVA 3 is
+                                               a fit whose source states no error: that of any stated value
 oil layer              half to twice           what brings oil back to a track is not known better
 inner geometry         what an estimate states `mbs.unknowns.geometry`
 profile of rollers     iso, or straight        assumed
 preload of springs     20 %                    assumed; loads with "preload" in their name, and axial offsets
 cage angle             a pitch, each bearing   cages stand anywhere
 loads                  none                    held, and said
+oil supply             alternatives, no band   flooded where none is stated; beside it oil bath, oil air, grease
 =====================  ======================  =====================================================================
 
 Whatever states a tolerance replaces its row, see `mbs.unknowns.statement`. The viscosity of a class is a shift of
@@ -27,10 +29,12 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.designations.clearance import STATED, clearance_range
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import OilSupply
 from mbs.scene.changes import warmed, with_bearing, with_clearance_of, with_layers, with_loads
 from mbs.scene.fields import DEGREE, MICROMETRE
 from mbs.scene.scene import Scene
@@ -38,6 +42,9 @@ from mbs.scene.specs import BearingSpec, LocatingSpec
 from mbs.unknowns.geometry import geometries, profiles
 from mbs.unknowns.statement import tolerance_of
 from mbs.unknowns.unknown import Unknown, looks_of
+
+if TYPE_CHECKING:
+    from mbs.scene.assembly import Model
 
 LOOSER, WARMER = 5e-6, 5.0
 """Half-widths of a clearance [m] and of a temperature [K] that are stated without a tolerance."""
@@ -54,22 +61,42 @@ CAGES = 8
 _AS_STATED = "as stated"
 
 
-def held_open(scene: Scene) -> tuple[Unknown, ...]:
+SUPPLIES = ("oil bath", "oil air", "grease")
+"""Oil supplies that a machine may have where none is stated, so that its films are flooded."""
+
+
+def held_open_of(model: Model) -> tuple[Unknown, ...]:
+    """List all that a model leaves open: what its law feels, and other oil supplies beside it.
+
+    Parameters
+    ----------
+    model : Model
+        The model.
+    """
+    given = [*model.supplies.values(), *(one.films.supply for one in model.located if one.films is not None)]
+    flooded = given and model.recipe.supply is None and all(supply.flooded for supply in given)
+    return (*held_open(model.scene, model.has_films), *(_supplies(model.scene) if flooded else ()))
+
+
+def held_open(scene: Scene, films: bool = True) -> tuple[Unknown, ...]:
     """List all that a scene leaves open; what is stated to be exact is not among it.
 
     Parameters
     ----------
     scene : Scene
         The scene, with the clearances and temperatures in force: that of a `Model`.
+    films : bool
+        Whether its law has films: a dry one feels no oil, and a temperature only by fits and warm rings.
     """
     if not scene.has_bearings:
         return ()
-    oil = () if scene.lubricant is None else (*_viscosity(scene, scene.lubricant), *_alpha(scene, scene.lubricant))
+    oil = (*_viscosity(scene, scene.lubricant), *_alpha(scene, scene.lubricant)) if films and scene.lubricant else ()
+    warm = films or any(entry.thermal is not None or entry.mounting is not None for entry in scene.bearings)
     return (
         *_clearances(scene),
-        *_temperature(scene),
+        *(_temperature(scene) if warm else ()),
         *oil,
-        *_layers(scene),
+        *(_layers(scene) if films else ()),
         *geometries(scene),
         *profiles(scene),
         *_preload(scene),
@@ -163,6 +190,14 @@ def _layers(scene: Scene) -> Iterator[Unknown]:
     held = ", ".join(f"{least * layer:.3g} to {most * layer:.3g} um" for layer in layers)
     looks, one = looks_of([_at(with_layers, scene, factor) for factor in (least, most)])
     yield Unknown("oil layer", "oil_layer", held, why, looks, one)
+
+
+def _supplies(scene: Scene) -> Iterator[Unknown]:
+    """Other oil supplies, where none is stated."""
+    if scene.supply is None and all(getattr(entry, "supply", None) is None for entry in scene.of_all_kinds):
+        for text in SUPPLIES:
+            changed = dataclasses.replace(scene, supply=OilSupply.named(text))
+            yield Unknown(text, "supply", "in place of flooded", "not stated: assumed", (changed,), beside=True)
 
 
 def _preload(scene: Scene) -> Iterator[Unknown]:

@@ -67,6 +67,14 @@ class Term:
         """The larger side."""
         return np.maximum(self.rise, self.fall)
 
+    def of(self, place: Any) -> Term:
+        """The changes of some of the values, by any index of arrays."""
+        return dataclasses.replace(self, rise=self.rise[place], fall=self.fall[place])
+
+    def scaled(self, factor: float) -> Term:
+        """The changes in another unit."""
+        return dataclasses.replace(self, rise=factor * self.rise, fall=factor * self.fall)
+
 
 @dataclass(frozen=True, eq=False)
 class Band:
@@ -88,6 +96,8 @@ class Band:
         Unknowns that could not be looked at, each with the reason.
     signed : array of bool, same shape, or None
         True for values that may have either sign, such as levels and coupling stiffnesses; None: none of them.
+    beside : tuple of Term
+        Changes by alternatives, which are no spread and in no bound.
     """
 
     value: FloatArray
@@ -97,6 +107,7 @@ class Band:
     looks: int = 0
     refused: tuple[str, ...] = ()
     signed: BoolArray | None = None
+    beside: tuple[Term, ...] = ()
 
     @cached_property
     def rise(self) -> FloatArray:
@@ -150,15 +161,25 @@ class Band:
 
     def of(self, place: Any) -> Band:
         """The band of some of the values, by any index of arrays."""
-        terms = (dataclasses.replace(t, rise=t.rise[place], fall=t.fall[place]) for t in self.terms)
-        value, numerics = self.value[place], self.numerics[place]
-        signed = None if self.signed is None else self.signed[place]
-        return Band(value, numerics, tuple(terms), self.lost[place], self.looks, self.refused, signed)
+        return dataclasses.replace(
+            self,
+            value=self.value[place],
+            numerics=self.numerics[place],
+            terms=tuple(term.of(place) for term in self.terms),
+            lost=self.lost[place],
+            signed=None if self.signed is None else self.signed[place],
+            beside=tuple(term.of(place) for term in self.beside),
+        )
 
     def scaled(self, factor: float) -> Band:
         """The band in another unit."""
-        terms = (dataclasses.replace(t, rise=factor * t.rise, fall=factor * t.fall) for t in self.terms)
-        return dataclasses.replace(self, value=factor * self.value, numerics=factor * self.numerics, terms=tuple(terms))
+        return dataclasses.replace(
+            self,
+            value=factor * self.value,
+            numerics=factor * self.numerics,
+            terms=tuple(term.scaled(factor) for term in self.terms),
+            beside=tuple(term.scaled(factor) for term in self.beside),
+        )
 
     def largest(self, place: Any = ..., count: int = 2) -> list[Term]:
         """The terms that decide some of the values: their root mean squares, in parts of the values, are largest.
@@ -211,7 +232,8 @@ def band(look: Look, centre: FloatArray, unknowns: Sequence[Unknown], numerics: 
     A look without a result, as of a shaft that no longer rests on anything, is left out; the other side is then
     reflected. Where all fail the unknown is named in `refused`.
     """
-    terms, refused, lost, looks = [], [], np.zeros(centre.shape, dtype=np.int64), 0
+    terms, beside, refused = list[Term](), list[Term](), list[str]()
+    lost, looks = np.zeros(centre.shape, dtype=np.int64), 0
     for unknown in unknowns:
         changes, reasons = [], []
         for scene in unknown.looks:
@@ -226,8 +248,10 @@ def band(look: Look, centre: FloatArray, unknowns: Sequence[Unknown], numerics: 
             continue
         lost += np.sum([np.isnan(change) for change in changes], axis=0)
         both = unknown.reflected or len(unknown.looks) == 2
-        terms.append(_term(unknown, _both_ways(changes) if both else changes))
-    return Band(centre, numerics, tuple(terms), np.where(np.isnan(centre), 0, lost), looks, tuple(refused))
+        term = _term(unknown, _both_ways(changes) if both else changes)
+        (beside if unknown.beside else terms).append(term)
+    lost = np.where(np.isnan(centre), 0, lost)
+    return Band(centre, numerics, tuple(terms), lost, looks, tuple(refused), beside=tuple(beside))
 
 
 def _both_ways(sides: list[FloatArray]) -> list[FloatArray]:

@@ -16,7 +16,7 @@ from mbs.model.equilibrium import Equilibrium
 from mbs.scene.assembly import Model
 from mbs.scene.scene import Scene
 from mbs.unknowns.bounds import with_bounds
-from mbs.unknowns.held_open import held_open
+from mbs.unknowns.held_open import held_open_of
 from mbs.unknowns.looks import Band, band
 
 MOST_DAMPED = 0.5
@@ -41,6 +41,11 @@ class ModeBands:
     chosen: IntArray
     frequency: Band
     damping_ratio: Band
+
+    @property
+    def told(self) -> dict[str, Band]:
+        """Both by what they are of, in words."""
+        return {"frequency": self.frequency, "damping ratio": self.damping_ratio}
 
     def place(self, mode: int) -> int | None:
         """Place of a mode among those that have bands; None for one that has none."""
@@ -104,10 +109,21 @@ class ModeLook:
     modes: Modes
     chosen: IntArray
 
+    @property
+    def centre(self) -> FloatArray:
+        """The modes as they are printed."""
+        return np.array([self.modes.frequency[self.chosen], self.modes.damping_ratio[self.chosen]])
+
+    @property
+    def numerics(self) -> FloatArray:
+        """What numerics leave open of them."""
+        bands = self.modes.bands
+        return np.zeros((2, self.chosen.size)) if bands is None else np.array([part[self.chosen] for part in bands[:2]])
+
     def __call__(self, scene: Scene, standing: bool) -> FloatArray:
         """Look at a changed scene; NaN for modes that it has not."""
         balance = looked_at(self.model.again(scene), self.balance, standing)
-        return self.paired(balance, modes(balance))
+        return self.paired(balance, modes(balance, errors=False))
 
     def paired(self, balance: Equilibrium, found: Modes) -> FloatArray:
         """Values of the modes of the reference in another system."""
@@ -135,8 +151,5 @@ def bands_of(model: Model, balance: Equilibrium, found: Modes, highest: float) -
     """
     chosen = banded(found, highest)
     look = ModeLook(model, balance, found, chosen)
-    centre = np.array([found.frequency[chosen], found.damping_ratio[chosen]])
-    none = np.zeros_like(centre)
-    numerics = none if found.bands is None else np.array([part[chosen] for part in found.bands[:2]])
-    both = band(look, centre, held_open(model.scene), numerics)
+    both = band(look, look.centre, held_open_of(model), look.numerics)
     return ModeBands(chosen, both.of(0), both.of(1))

@@ -16,7 +16,7 @@ from mbs.linearised.modes import Modes, modes
 from mbs.model.equilibrium import Equilibrium
 from mbs.scene.assembly import Model
 from mbs.scene.scene import Scene
-from mbs.unknowns.held_open import held_open
+from mbs.unknowns.held_open import held_open_of
 from mbs.unknowns.looks import Band, band
 from mbs.unknowns.of_modes import ModeLook, banded, looked_at
 
@@ -91,7 +91,7 @@ def peak_bands(
         numerics[1] = errors[at]
     # Looks read the response beside the mode alone: what that misses of the printed peak is in all of them alike.
     missed = values - look.values(balance, found)
-    both = band(lambda scene, standing: look(scene, standing) + missed, values, held_open(model.scene), numerics)
+    both = band(lambda scene, standing: look(scene, standing) + missed, values, held_open_of(model), numerics)
     level = dataclasses.replace(both.of(1), signed=np.ones(places.shape[0], dtype=np.bool_))
     return PeakBands(places, both.of(0), level)
 
@@ -114,7 +114,7 @@ class _PeakLook:
     def __call__(self, scene: Scene, standing: bool) -> FloatArray:
         """Look at a changed scene."""
         balance = looked_at(self.modes.model.again(scene), self.modes.balance, standing)
-        return self.values(balance, modes(balance))
+        return self.values(balance, modes(balance, errors=False))
 
     def values(self, balance: Equilibrium, found: Modes) -> FloatArray:
         """Peaks of the modes of a system."""

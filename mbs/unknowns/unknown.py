@@ -33,6 +33,8 @@ class Unknown:
         Whether the difference of the single look stands, with the other sign, for the other end, too.
     frozen_cage : bool
         Whether the looks are of one cage angle each, that of their bearings, and not of the mean over a pitch.
+    beside : bool
+        Whether it is an alternative that no band holds: what it changes is a line of its own.
     """
 
     name: str
@@ -42,6 +44,7 @@ class Unknown:
     looks: tuple[Scene, ...] = ()
     reflected: bool = False
     frozen_cage: bool = False
+    beside: bool = False
 
     @property
     def is_member(self) -> bool:

@@ -5,49 +5,49 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from mbs.scene.scene import Scene
-from mbs.unknowns.held_open import held_open
 from mbs.unknowns.unknown import Unknown
 
 _FIRST, _SECOND = ("clearance",), ("temperature", "viscosity", "pressure_viscosity", "oil_layer", "load")
 """Groups of the first two lines of a head; the third has the others."""
 
-NOT_IN_IT = "whether contacts are flooded, damping of seats and joints, loads, and masses and bodies of the scene"
+NOT_IN_IT = "damping of seats and joints, loads, and masses and bodies of the scene"
 """Unknowns that no band holds, of any machine."""
 
 BALL_CAGE = "the cage hypothesis of balls"
 """Unknowns that bands of machines with balls do not hold besides."""
 
 
-def open_lines(scene: Scene, more: str = "; each is listed by mbs check") -> list[str]:
+def open_lines(unknowns: Sequence[Unknown], more: str = "; each is listed by mbs check") -> list[str]:
     """Head of a result: what is held open, by how much and why, in three lines at most; none without bearings.
 
     Parameters
     ----------
-    scene : Scene
-        The scene, with the values in force.
+    unknowns : sequence of Unknown
+        What is held open.
     more : str
         Words on where the rest is told.
 
     Examples
     --------
     >>> from mbs import read_scene
-    >>> print(*open_lines(read_scene("nu308_rigid"))[:1])
+    >>> from mbs.unknowns.held_open import held_open
+    >>> print(*open_lines(held_open(read_scene("nu308_rigid")))[:1])
       held open: clearance of bearing_left, bearing_right 0 um +-5 um (stated bare: fits and warmth of rings)
     """
-    return [f"  {'  ' if k else 'held open: '}{line}" for k, line in enumerate(open_words(scene, more))]
+    return [f"  {'  ' if k else 'held open: '}{line}" for k, line in enumerate(open_words(unknowns, more))]
 
 
-def open_words(scene: Scene, more: str = "") -> list[str]:
+def open_words(unknowns: Sequence[Unknown], more: str = "") -> list[str]:
     """The same without its heading.
 
     Parameters
     ----------
-    scene : Scene
-        The scene, with the values in force.
+    unknowns : sequence of Unknown
+        What is held open.
     more : str
         Words on where the rest is told.
     """
-    unknowns = held_open(scene)
+    unknowns = [one for one in unknowns if not one.beside]
     first, second = (_together(one for one in unknowns if one.group in groups) for groups in (_FIRST, _SECOND))
     lines = [", ".join(words) for words in (first, second) if words]
     rest = [one for one in unknowns if one.group not in (*_FIRST, *_SECOND)]
@@ -57,30 +57,36 @@ def open_words(scene: Scene, more: str = "") -> list[str]:
     return lines
 
 
-def open_list(scene: Scene) -> list[str]:
+def open_list(scene: Scene, unknowns: Sequence[Unknown]) -> list[str]:
     """All that is held open, a line each, and what no band holds.
 
     Parameters
     ----------
     scene : Scene
-        The scene, with the values in force.
+        The scene.
+    unknowns : sequence of Unknown
+        What is held open of it.
     """
     if not scene.has_bearings:
         return []
-    lines = [f"    {one.text}" for one in held_open(scene)]
+    lines = [f"    {one.text}" for one in unknowns if not one.beside]
     head = ["  held open, until --know or [tolerances] state it better:"] if lines else ["  held open: nothing"]
-    return [*head, *lines, f"  {missing_words(scene)}"]
+    return [*head, *lines, f"  {missing_words(scene, unknowns)}"]
 
 
-def missing_words(scene: Scene) -> str:
+def missing_words(scene: Scene, unknowns: Sequence[Unknown]) -> str:
     """Words on what no band of a scene holds.
 
     Parameters
     ----------
     scene : Scene
         The scene.
+    unknowns : sequence of Unknown
+        What is held open of it.
     """
-    held = [one.name for one in held_open(scene) if not one.looks]
+    held = [one.name for one in unknowns if not one.looks]
+    beside = [one.name for one in unknowns if one.beside]
+    held += [f"oil supply ({', '.join(beside)})"] if beside else []
     return f"not in it: {', '.join([NOT_IN_IT, *([BALL_CAGE] if scene.has_points else []), *held])}"
 
 

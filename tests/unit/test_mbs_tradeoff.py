@@ -60,7 +60,7 @@ class TestLinearLook:
 class TestTradeoff:
     @pytest.mark.slow
     def test_rows_references_and_defaults(self, monkeypatch):
-        monkeypatch.setattr(sources, "SUPPLIES", ("flooded", "oil air"))
+        monkeypatch.setattr(sources, "SUPPLIES", ("oil air",))
         monkeypatch.setattr(analysis, "SLICES", (3, 9))
         monkeypatch.setattr(analysis, "ANGLES", (4, 8))
         # Tables of a formula take longer than all the rest.

@@ -163,7 +163,7 @@ def test_a_look_is_the_machine_made_anew(rigid):
 @pytest.fixture
 def few_unknowns(monkeypatch):
     """Clearances and temperature alone are open: other looks cost seconds."""
-    for name in ("_alpha", "profiles", "_cages"):
+    for name in ("_alpha", "profiles", "_cages", "_supplies"):
         monkeypatch.setattr(held_open, name, lambda *given: ())
 
 
@@ -207,7 +207,10 @@ def test_a_look_at_one_bearing_is_the_command_with_another_clearance(tmp_path, m
         (["statics"], ["bearing_stiffness", "hertz_pressure"]),
         (["lsa"], ["peak_frequency", "peak_level"]),
         (["sweep", "--speed", "1000 rpm", "2000 rpm", "3"], ["complex_frequency", "complex_damping_ratio"]),
-        (["critical", "--speed", "1000 rpm", "4000 rpm", "3"], ["critical_speed", "critical_damping_ratio"]),
+        (
+            ["critical", "--speed", "1000 rpm", "4000 rpm", "3"],
+            ["critical_speed", "critical_damping_ratio", "response_largest", "orbit_largest"],
+        ),
     ],
     ids=["statics", "lsa", "sweep", "critical"],
 )
@@ -262,7 +265,7 @@ def test_critical_speeds_move_as_those_of_the_changed_machine(rigid, monkeypatch
     speeds = SweepSettings(SweepRange(850.0, 1150.0, 3))
     looks = tuple(with_temperature(rigid.scene, rigid.scene.temperature + by) for by in (-1.0, 1.0))
     one = Unknown("temperature", "temperature", "+-1 K", "", looks)
-    monkeypatch.setattr("mbs.unknowns.of_modes.held_open", lambda scene: (one,))
+    monkeypatch.setattr("mbs.unknowns.over_speed.held_open_of", lambda model: (one,))
     found = critical(rigid, speeds)
     low, high = found.bounds[0, :2]
     numerics = found.sweep.damped.frequency_error[1, 0] / found.sweep.damped.frequency[1, 0]

@@ -101,7 +101,13 @@ def point_lines(bands: dict[str, Band], scene: Scene) -> list[str]:
     """
     some = next(iter(bands.values()))
     refused = [line for line in lost_lines(some.of(None), [""]) if "not in the bands" in line]
-    lines = [*quantity_lines(list(_quantities(bands))), *refused, *open_lines(scene, ""), *about_lines(scene)]
+    unknowns = held_open(scene)
+    lines = [
+        *quantity_lines(list(_quantities(bands))),
+        *refused,
+        *open_lines(unknowns, ""),
+        *about_lines(scene, unknowns),
+    ]
     return [line.replace(f" of {NAME}", "") for line in lines]  # there is no other
 
 

@@ -24,6 +24,7 @@ from mbs.scene.fields import DEGREE, HERTZ, MICROMETRE
 from mbs.scene.locating.ribs import open_sides
 from mbs.scene.scene import Scene
 from mbs.scene.specs import BearingSpec, LocatingSpec, RigidSpec, ShaftSpec
+from mbs.unknowns.held_open import held_open_of
 from mbs.unknowns.words import open_list
 
 
@@ -38,7 +39,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     found = open_sides(scene)
     ends = [f"problem: {problem}" for problem in found] or ["no problem found"]
     physics = _physics(arguments, model)
-    lines += open_list(scene)
+    lines += open_list(scene, held_open_of(model))
     return "\n".join([*lines, "", *_analyses(scene), *physics, *ends]), 1 if found else 0
 
 
