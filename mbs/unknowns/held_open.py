@@ -73,9 +73,8 @@ def held_open_of(model: Model) -> tuple[Unknown, ...]:
     model : Model
         The model.
     """
-    given = [*model.supplies.values(), *(one.films.supply for one in model.located if one.films is not None)]
-    flooded = given and model.recipe.supply is None and all(supply.flooded for supply in given)
-    return (*held_open(model.scene, model.has_films), *(_supplies(model.scene) if flooded else ()))
+    flooded = model.recipe.supply is None and all(supply.flooded for supply in model.supplies.values())
+    return (*held_open(model.scene, model.has_films), *(_supplies(model.scene) if model.has_films and flooded else ()))
 
 
 def held_open(scene: Scene, films: bool = True) -> tuple[Unknown, ...]:
