@@ -73,7 +73,7 @@ def held_open_of(model: Model) -> tuple[Unknown, ...]:
     model : Model
         The model.
     """
-    flooded = model.recipe.supply is None and all(supply.flooded for supply in model.supplies.values())
+    flooded = all(supply.flooded for supply in model.supplies.values())  # that of the job of a map is stated
     return (*held_open(model.scene, model.has_films), *(_supplies(model.scene) if model.has_films and flooded else ()))
 
 
