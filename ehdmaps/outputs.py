@@ -42,6 +42,9 @@ _LONGEST_ENDING = 16
 _LEFT_SECONDS = 3600.0
 """A file that nobody wrote to for so long, by a process that is no more, was left: here or on another machine."""
 
+RESOLUTION = 150
+"""Dots an inch of figures."""
+
 _FIGURE_KEYS = {".png": "Software", ".pdf": "Creator", ".svg": "Creator"}
 
 
@@ -242,7 +245,7 @@ def write_text(path: str | Path, text: str, kind: Kind) -> None:
         aside.write_text(text, encoding="utf-8")
 
 
-def write_figure(figure: Any, path: str | Path, resolution: float) -> None:
+def write_figure(figure: Any, path: str | Path) -> None:
     """Write a figure of matplotlib as png, pdf or svg, by the ending of its name.
 
     Parameters
@@ -251,8 +254,6 @@ def write_figure(figure: Any, path: str | Path, resolution: float) -> None:
         The figure.
     path : str or Path
         The file.
-    resolution : float
-        Dots an inch.
 
     Raises
     ------
@@ -266,7 +267,7 @@ def write_figure(figure: Any, path: str | Path, resolution: float) -> None:
     with written_aside(path, FIGURE) as aside, mpl.rc_context({"text.usetex": False}):  # of texts that drawing makes
         without_latex(figure)
         ending = aside.suffix.lower()
-        figure.savefig(aside, format=ending[1:], dpi=resolution, metadata={_FIGURE_KEYS[ending]: MARK})
+        figure.savefig(aside, format=ending[1:], dpi=RESOLUTION, metadata={_FIGURE_KEYS[ending]: MARK})
 
 
 def cache_folder(name: str, variable: str, environment: Mapping[str, str]) -> Path:

@@ -45,6 +45,13 @@ def numerics_alone() -> Iterator[None]:
 
 
 @pytest.fixture(scope="session", autouse=True)
+def coarse_figures() -> Iterator[None]:
+    """Draw figures with few dots: of each of them that takes half a second."""
+    with mock.patch("ehdmaps.outputs.RESOLUTION", 60):
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
 def own_binaries() -> Iterator[None]:
     """Compile units for this system alone: for all of them it takes ten seconds of processor time each."""
     with mock.patch("ehdmaps.exports.fmu.binaries.zig", return_value=()):

@@ -6,6 +6,7 @@ Wall time says little on machines that do other work. A commit that changes what
 from __future__ import annotations
 
 import collections
+import importlib
 import os
 import sys
 from collections.abc import Iterator
@@ -18,6 +19,9 @@ QUICK = 2.0
 
 LISTED = 30
 """Files that the report names."""
+
+MANY = 500
+"""Tests of a run that is asked how long it compiles."""
 
 
 def processor_time() -> float:
@@ -37,6 +41,11 @@ class Durations:
         self.over: dict[str, float] = {}
         """Seconds of phases of tests that took too long without the mark."""
         self._heard, self._depth, self._began = False, 0, 0.0
+
+    def pytest_collection_finish(self, session: pytest.Session) -> None:
+        """Load numba, which tells how long it compiles, for runs of many tests."""
+        if len(session.items) > MANY:
+            importlib.import_module("numba.core.event")
 
     def _listen(self) -> None:
         """Hear of compiling from now on, if numba is loaded."""

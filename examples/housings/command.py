@@ -15,8 +15,6 @@ from examples.housings.make import Made, check_cutoff, make
 from examples.housings.picture import housing_figure
 from mbs.flexible.reduced_file import REDUCED, write_reduced
 
-RESOLUTION = 120
-
 _FACTORS = (1.5, 1.0, 0.75)
 """Sizes of the table of convergence, of the shipped one."""
 
@@ -65,7 +63,7 @@ def run(arguments: argparse.Namespace) -> str:
     made = make(chosen, size, cutoff, Path(arguments.keep) if arguments.keep else None)
     lines = _described(chosen, made, cutoff)
     if arguments.picture:
-        write_figure(housing_figure(chosen, made.mesh), arguments.picture, RESOLUTION)
+        write_figure(housing_figure(chosen, made.mesh), arguments.picture)
         lines.append(f"{arguments.picture}: written")
     write_reduced(output, made.reduced)
     lines.append(f"{output}: written, {output.stat().st_size / 1e3:.0f} kB, after {time.monotonic() - begin:.0f} s")

@@ -27,8 +27,6 @@ _BALLS = re.compile(r"\s*[67]\d{3}(?!\d)")
 _TAPERED = re.compile(r"\s*(?:HR ?)?3[0-3][0-9][ -]?\d\d(?!\d)", re.IGNORECASE)
 """Beginning of the designation of a tapered roller bearing."""
 
-RESOLUTION = 150
-
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Compute all points, describe and write them; status 1 where one is outside of what the laws hold for."""
@@ -153,5 +151,5 @@ def _drawn(path: str, kind: Kind, description: Description, points: Points) -> s
     """Draw the figure of --plot, and return what was written in words."""
     from mbs.output.bearing_plot import bearing_figure
 
-    write_figure(bearing_figure(kind, description, points), path, RESOLUTION)
+    write_figure(bearing_figure(kind, description, points), path)
     return f"{path}: written"

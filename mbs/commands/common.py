@@ -54,8 +54,6 @@ if TYPE_CHECKING:
 
     from ehdmaps.jobs.make.status import Bar, Lines
 
-RESOLUTION = 150
-
 
 @dataclass(frozen=True, eq=False)
 class Done(Generic[R]):
@@ -154,7 +152,7 @@ def write_plot(figure: Figure, path: str) -> list[str]:
         text.set_text(text.get_text().replace("$", r"\$"))
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        write_figure(figure, path, RESOLUTION)
+        write_figure(figure, path)
     return [f"{path}: written", *dict.fromkeys(f"warning: {path}: {entry.message}" for entry in caught)]
 
 

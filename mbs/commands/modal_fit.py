@@ -12,7 +12,6 @@ import numpy as np
 from ehdmaps.errors import InputError, Problems
 from ehdmaps.outputs import FIGURE, Output, output_problems, write_figure
 from ehdmaps.units import quantity
-from mbs.commands.common import RESOLUTION
 from mbs.modal.estimation import Estimate, estimate, needed_decay
 from mbs.modal.fit import identify
 from mbs.modal.records import Responses
@@ -227,6 +226,6 @@ def _write(arguments: argparse.Namespace, measured: Measurement, responses: Resp
     if arguments.plot:
         from mbs.output.modes_plot import fit_figure
 
-        write_figure(fit_figure(measured.title or Path(arguments.file).name, fit), arguments.plot, RESOLUTION)
+        write_figure(fit_figure(measured.title or Path(arguments.file).name, fit), arguments.plot)
         lines.append(f"{arguments.plot}: written")
     return lines

@@ -234,7 +234,7 @@ def test_figures_are_known_again(here, ending):
     figure = Figure()
     figure.subplots().plot([1, 2])
     for _ in range(2):  # the second replaces the first
-        outputs.write_figure(figure, f"a.{ending}", 50)
+        outputs.write_figure(figure, f"a.{ending}")
     # as a figure of somebody else's script
     figure.savefig(here / f"b.{ending}", dpi=50)
     assert "is not a figure of ehdmaps" in problem(f"b.{ending}", FIGURE)
@@ -249,7 +249,7 @@ def test_a_matplotlibrc_that_asks_for_latex_stops_no_figure(here):
         axes.legend()
         write_heading(figure, "N/µm & 5 %", 9)
         keep_within(figure, figure.text(0.1, 0.5, "a_b"))
-        outputs.write_figure(figure, "a.png", 50)
+        outputs.write_figure(figure, "a.png")
     assert (here / "a.png").stat().st_size > 1000
 
 
@@ -268,7 +268,7 @@ def test_c_has_no_quotation_marks_in_names(here):
 
 def test_a_figure_that_fails_leaves_the_old_one(here, monkeypatch):
     figure = Figure()
-    outputs.write_figure(figure, "a.png", 50)
+    outputs.write_figure(figure, "a.png")
     good = (here / "a.png").read_bytes()
 
     def full(file, **_):
@@ -277,7 +277,7 @@ def test_a_figure_that_fails_leaves_the_old_one(here, monkeypatch):
 
     monkeypatch.setattr(figure, "savefig", full)
     with pytest.raises(InputError, match=r"a\.png: cannot be written \(No space left"):
-        outputs.write_figure(figure, "a.png", 50)
+        outputs.write_figure(figure, "a.png")
     assert (here / "a.png").read_bytes() == good
     assert os.listdir(here) == ["a.png"]
 

@@ -14,8 +14,6 @@ from ehdmaps.program import tell
 from ehdmaps.solids.three_d_compare import compare_lengths
 from ehdmaps.solids.three_d_reference import make_reference, read_reference, save_reference, shipped_reference
 
-_RESOLUTION = 150
-
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Compare, or make the finite elements anew first."""
@@ -43,6 +41,6 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     cases = compare_lengths(reference, bearing)
     lines = length_text(reference, cases) + lines
     if arguments.plot is not None:
-        write_figure(length_figure(reference, cases), arguments.plot, _RESOLUTION)
+        write_figure(length_figure(reference, cases), arguments.plot)
         lines.append(f"{arguments.plot}: written")
     return "\n".join(lines), 0

@@ -98,9 +98,9 @@ def run(arguments: argparse.Namespace, source: str) -> tuple[str, int]:
     if kind is None:
         return described(dataset), 0
     if kind is FIGURE:
-        from ehdmaps.jobs.show.points_plot import RESOLUTION, points_map_figure
+        from ehdmaps.jobs.show.points_plot import points_map_figure
 
-        write_figure(points_map_figure(dataset), path, RESOLUTION)
+        write_figure(points_map_figure(dataset), path)
     elif kind is MATLAB:
         write_matlab(path, {"map": matlab_struct(dataset)}, "export it as csv")
     else:

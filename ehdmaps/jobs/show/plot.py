@@ -42,7 +42,6 @@ from ehdmaps.program import plain
 from ehdmaps.units import DAMPING, FILM, LOAD, PRESSURE, SPEED, STIFFNESS, TEMPERATURE, Display
 
 A4_LANDSCAPE = (11.69, 8.27)
-RESOLUTION = 200
 MOST_TEMPERATURES = 6
 SHOWN_TEMPERATURE = 313.15
 """The full panels are at the mapped temperature nearest to this one [K]: where oils are compared."""
@@ -88,7 +87,7 @@ def plot_map(emap: EHDMap, output: Path) -> None:
     import matplotlib as mpl
 
     with mpl.rc_context(FONT):
-        write_figure(_page(Sheet(emap, law_field(emap))), output, RESOLUTION)
+        write_figure(_page(Sheet(emap, law_field(emap))), output)
 
 
 def _page(sheet: Sheet) -> Figure:

@@ -10,7 +10,6 @@ from ehdmaps.figures import COLOURS, typeset, write_heading
 from ehdmaps.jobs.make.points.points_map import SIDES
 from ehdmaps.units import DAMPER, FILM, SPEED, SPRING, TEMPERATURE
 
-RESOLUTION = 200
 SIZE = (11.0, 7.6)
 """Size of the page [inch]."""
 

@@ -16,7 +16,6 @@ from ehdmaps.jobs.show.plot import (
     A4_LANDSCAPE,
     FONT,
     MOST_TEMPERATURES,
-    RESOLUTION,
     contact_words,
     mark_entries,
     page_legend,
@@ -76,7 +75,7 @@ def plot_roughness(emap: EHDMap, output: Path) -> None:
 
     derived = rough_variables(emap.dataset, emap.contacts, emap.lubricant, emap.surface)
     with mpl.rc_context(FONT):
-        write_figure(_page(Sheet(emap, None, derived)), output, RESOLUTION)
+        write_figure(_page(Sheet(emap, None, derived)), output)
 
 
 def _page(sheet: Sheet) -> Figure:

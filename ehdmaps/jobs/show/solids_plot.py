@@ -22,7 +22,6 @@ from ehdmaps.solids.three_d_compare import LengthComparison
 from ehdmaps.solids.three_d_reference import LengthReference
 from ehdmaps.units import COMPLIANCE, LOAD, written
 
-RESOLUTION = 200
 SHOWN_GRADING = 0.3
 """Grading of the meshes that are drawn: those that are solved are too fine to be seen."""
 
@@ -59,7 +58,7 @@ def plot_solids(contacts: Sequence[LineContact], bearing: BearingGeometry, secti
     import matplotlib as mpl
 
     with mpl.rc_context(_FONT):
-        write_figure(solids_figure(contacts, bearing, sections), output, RESOLUTION)
+        write_figure(solids_figure(contacts, bearing, sections), output)
 
 
 def solids_figure(contacts: Sequence[LineContact], bearing: BearingGeometry, sections: Sections) -> Figure:

@@ -33,7 +33,6 @@ if TYPE_CHECKING:
 ROW = (11.69, 3.6)
 """Size of a row [inch]."""
 
-RESOLUTION = 200
 _FONT: Any = {"font.size": 8.5, "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6}
 _PLACES = (("inlet", COLOURS[0]), ("centre", COLOURS[7]), ("spike", WARNING))
 
@@ -78,7 +77,7 @@ def write_page(output: Path, draw: Callable[..., Figure], *given: object) -> Non
         If it cannot be written, or the ending is not known.
     """
     with mpl.rc_context(_FONT):
-        write_figure(draw(*given), output, RESOLUTION)
+        write_figure(draw(*given), output)
 
 
 def films_figure(rows: Sequence[FilmRow], heading: str) -> Figure:

@@ -163,8 +163,8 @@ def write_trade(trade: Trade, output: str | None, plot: str | None, everything: 
             trade_dataset(trade).assign_attrs({MADE_AS: _MADE_AS}).to_netcdf(aside, engine="netcdf4", mode="w")
         lines.append(f"{output}: written")
     if plot is not None:
-        from mbs.laboratory.tradeoff.figure import RESOLUTION, trade_figure
+        from mbs.laboratory.tradeoff.figure import trade_figure
 
-        write_figure(trade_figure(trade, everything), plot, RESOLUTION)
+        write_figure(trade_figure(trade, everything), plot)
         lines.append(f"{plot}: written")
     return lines

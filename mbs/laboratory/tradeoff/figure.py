@@ -16,9 +16,6 @@ from ehdmaps.trade.budget import BUDGET_WORDS, Bar, budget, budget_axis, budget_
 from ehdmaps.trade.record import Choice, Judged, Trade
 from mbs.laboratory.tradeoff.answer import number
 
-RESOLUTION = 150
-"""Dots an inch."""
-
 _COLUMNS, _PANEL = 2, (4.0, 3.2)
 _KEY, _KEY_LINE = 3.4, 0.155
 """Width of the key, and height of one of its lines [inch]."""
