@@ -6,7 +6,8 @@ Messages say where, what was got (with unit), what is allowed, and what to do.
 from __future__ import annotations
 
 import difflib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
 
 class EhdmapsError(Exception):
@@ -48,6 +49,20 @@ class Problems(list[str]):
         if isinstance(error, InputError):
             self += error.problems
         return isinstance(error, InputError)
+
+    @contextmanager
+    def after(self, before: str) -> Iterator[None]:
+        """Note the problems of what fails in this context, each after a start.
+
+        Parameters
+        ----------
+        before : str
+            The start, such as "--oil: ".
+        """
+        try:
+            yield
+        except InputError as error:
+            self += (f"{before}{problem}" for problem in error.problems)
 
     def check(self) -> None:
         """Raise an `InputError` with all of them, each once, where there are any."""

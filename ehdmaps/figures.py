@@ -114,3 +114,17 @@ def legend_columns(labels: Sequence[str], letters: int, most: int) -> int:
     """
     longest = max(map(len, labels), default=0)
     return max(1, min(most, letters // (longest + _HANDLE)))
+
+
+def spread(size: int, most: int) -> list[int]:
+    """Return at most so many places of an axis, evenly, both ends among them.
+
+    Parameters
+    ----------
+    size : int
+        Number of values on the axis.
+    most : int
+        Largest number of places.
+    """
+    count = min(size, most)
+    return sorted({0, *(round(i * ((size - 1) / (count - 1))) for i in range(1, count))})

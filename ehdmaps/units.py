@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -274,3 +275,29 @@ MOTIONS = {
     "rad/s2": Display("rad/s2"),
 }
 """How people are shown displacements, velocities and accelerations, by SI unit; so are responses, per N or N m."""
+
+
+def point_text(load: float, entrainment_speed: float, temperature: float) -> str:
+    """Return an operating point of a line contact in words, such as '62 N/mm, 1.7 m/s, 40 degC'.
+
+    Parameters
+    ----------
+    load, entrainment_speed, temperature : float
+        w [N/m], u [m/s], T [K].
+    """
+    return f"{LOAD.text(load)}, {SPEED.text(entrainment_speed)}, {TEMPERATURE.text(temperature)}"
+
+
+def span(values: Iterable[float], display: Display) -> str:
+    """Return the range of some values in words, such as '0.1 to 1000 N/mm'.
+
+    Parameters
+    ----------
+    values : iterable of float
+        The values, in SI.
+    display : Display
+        How they are shown.
+    """
+    shown = [display.value(float(value)) for value in values]
+    low, high = min(shown), max(shown)
+    return f"{low:.4g} {display.unit}" if low == high else f"{low:.4g} to {high:.4g} {display.unit}"

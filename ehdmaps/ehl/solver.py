@@ -18,7 +18,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiling import stopwatch
 from ehdmaps.ehl.limits import SETTING_LIMITS, USUAL_DENSITY, GridShape, Resolution
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.physics.closed_form import (
     HEAVIEST_LOAD_NUMBER,
     LIGHTEST_LOAD_NUMBER,
@@ -146,12 +146,12 @@ class ReynoldsSolver(ContactSolverDefaults):
     slide_to_roll: float = 0.0
 
     def __post_init__(self) -> None:
-        problems = [
+        problems = Problems(
             f"reynolds solver, {name}: got {getattr(self, name)!r}; allowed: {low:g} to {high:g}; "
             "leave it out for the default"
             for name, (low, high) in SETTING_LIMITS.items()
             if (name, self.inlet_length) != ("inlet_length", None) and not low <= getattr(self, name) <= high
-        ]
+        )
         if self.physics not in PHYSICS:
             problems.append(f"reynolds solver, physics: got {self.physics!r:.60}; allowed: {', '.join(PHYSICS)}")
         if self.physics == INLET_HEAT and abs(self.slide_to_roll) > MOST_SLIP_OF_A_RULE:
@@ -159,12 +159,9 @@ class ReynoldsSolver(ContactSolverDefaults):
                 f"reynolds solver, slide_to_roll: got {self.slide_to_roll:g} with physics {INLET_HEAT}, whose rule "
                 f"knows no heat of sliding; allowed: {-MOST_SLIP_OF_A_RULE:g} to {MOST_SLIP_OF_A_RULE:g}"
             )
-        try:
+        with problems.after("reynolds solver, "):
             shear_law(self.shear, self.shear_stress, self.limiting_ratio, self.carreau_exponent)
-        except InputError as error:
-            problems += [f"reynolds solver, {problem}" for problem in error.problems]
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     @property
     def name(self) -> str:

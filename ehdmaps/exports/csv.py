@@ -13,16 +13,16 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import Problems
 from ehdmaps.exports.map_curves import curves, film_between, rough_layers
-from ehdmaps.exports.target import Target
+from ehdmaps.exports.target import Target, chosen_kind, chosen_place
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.rough_layer import FILM_PARAMETER, FILM_SHARE, RoughLayer, load_sharing
 from ehdmaps.maps.usable import known_grid
 from ehdmaps.outputs import MARK, TABLE, Output, check_outputs, write_text
 from ehdmaps.program import count, plain
-from ehdmaps.units import SPEED, TEMPERATURE, Display, quantity
+from ehdmaps.units import SPEED, TEMPERATURE, Display
 
 COLUMNS = (
     "entrainment_speed [m/s]",
@@ -136,34 +136,19 @@ def _write(emap: EHDMap, path: Path, output: Path | None, arguments: argparse.Na
 
 def _chosen(arguments: argparse.Namespace, emap: EHDMap) -> Chosen:
     """Read what is asked for; all problems at once."""
-    problems: list[str] = []
-    names = [contact.name for contact in emap.contacts]
-    kinds = ["series", *names] if "inner" in names else names
-    kind = arguments.contact or kinds[0]
-    if kind not in kinds:
-        problems.append(f"--contact: got {kind!r:.60}; allowed in this map: {', '.join(kinds)}")
+    problems = Problems()
+    kind = chosen_kind(emap, arguments.contact, problems)
 
-    def read(option: str, text: str | None, unit: str, axis: str, display: Display) -> tuple[float, ...]:
-        values = emap.dataset[axis].values
+    def read(axis: str, text: str | None, unit: str, display: Display) -> tuple[float, ...]:
         if text is None:
-            return tuple(map(float, values))
-        try:
-            value = quantity(text, unit)
-        except InputError as error:
-            problems.append(f"{option}: {error.problems[0]}")
-            return ()
-        # A standstill is a point of some maps, but between it and the lowest speed films fade by another rule.
-        low, high = float(min(values[values > 0.0], default=0.0)), float(values[-1])
-        if not low <= value <= high and value not in values:
-            problems.append(f"{option}: got {text!r}; allowed in this map: {display.text(low)} to {display.text(high)}")
-        return (value,)
+            return tuple(map(float, emap.dataset[axis].values))
+        return (chosen_place(emap, axis, text, unit, display, problems),)
 
-    speeds = read("--speed", arguments.speed, "m/s", "entrainment_speed", SPEED)
-    temperatures = read("--temperature", arguments.temperature, "K", "temperature", TEMPERATURE)
+    speeds = read("entrainment_speed", arguments.speed, "m/s", SPEED)
+    temperatures = read("temperature", arguments.temperature, "K", TEMPERATURE)
     if arguments.points < 2:
         problems.append(f"--points: got {arguments.points}; allowed: 2 to 1024")
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return Chosen(kind, speeds, temperatures, arguments.points)
 
 

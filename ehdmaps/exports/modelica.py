@@ -21,18 +21,17 @@ import re
 from collections.abc import Iterable
 from importlib import resources
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from ehdmaps.errors import InputError
-from ehdmaps.exports.target import Target, origin
+from ehdmaps.errors import InputError, Problems
+from ehdmaps.exports.target import Target, chosen_kind, chosen_place, origin
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.kernels import memory_table
-from ehdmaps.maps.law import LawAtPoint, LawKind
+from ehdmaps.maps.law import LawAtPoint
 from ehdmaps.outputs import Kind, Output, check_outputs, has_mark, write_text
 from ehdmaps.program import plain
-from ehdmaps.units import SPEED, TEMPERATURE, Display, quantity
+from ehdmaps.units import SPEED, TEMPERATURE
 
 PACKAGE = Kind("a Modelica package of ehdmaps", (".mo",), has_mark)
 
@@ -147,16 +146,16 @@ def _write(emap: EHDMap, path: Path, output: Path | None, arguments: argparse.Na
     """Write the package; by default beside the map."""
     output = output or path.with_suffix(".mo")
     check_outputs([Output("-o", output, PACKAGE)], [path])
-    problems: list[str] = []
-    names = [contact.name for contact in emap.contacts]
-    kinds: list[Any] = ["series", *names] if "inner" in names else names
-    kind: LawKind = arguments.contact or kinds[0]
-    if kind not in kinds:
-        problems.append(f"--contact: got {kind!r:.60}; allowed in this map: {', '.join(kinds)}")
-    speed = _chosen("--speed", arguments.speed, "m/s", emap, "entrainment_speed", SPEED, problems)
-    temperature = _chosen("--temperature", arguments.temperature, "K", emap, "temperature", TEMPERATURE, problems)
-    if problems:
-        raise InputError(problems)
+    problems = Problems()
+    kind = chosen_kind(emap, arguments.contact, problems)
+    speed, temperature = (
+        chosen_place(emap, axis, text, unit, display, problems)
+        for axis, text, unit, display in (
+            ("entrainment_speed", arguments.speed, "m/s", SPEED),
+            ("temperature", arguments.temperature, "K", TEMPERATURE),
+        )
+    )
+    problems.check()
     law = emap.law(kind).at(speed, temperature)
     header = (
         *origin(emap, path.name),
@@ -166,26 +165,6 @@ def _write(emap: EHDMap, path: Path, output: Path | None, arguments: argparse.Na
     )
     write_text(output, package(law, arguments.name, header, arguments.films == "memory"), PACKAGE)
     return f"{output}: written"
-
-
-def _chosen(
-    option: str, text: str | None, unit: str, emap: EHDMap, axis: str, display: Display, problems: list[str]
-) -> float:
-    """Read a speed or temperature within the map."""
-    values = emap.dataset[axis].values.astype(float)
-    low, high = float(min(values[values > 0.0], default=0.0)), float(values[-1])
-    if text is None:
-        if values.size > 1:
-            problems.append(f"{option}: missing; allowed in this map: {display.text(low)} to {display.text(high)}")
-        return high
-    try:
-        value = quantity(text, unit)
-    except InputError as error:
-        problems.append(f"{option}: {error.problems[0]}")
-        return high
-    if not low <= value <= high:
-        problems.append(f"{option}: got {text!r:.60}; allowed in this map: {display.text(low)} to {display.text(high)}")
-    return value
 
 
 def memory_text(law: LawAtPoint, words: dict[str, str]) -> str:

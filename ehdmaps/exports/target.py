@@ -14,13 +14,15 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
+from typing import Any
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.law import LawKind
 from ehdmaps.outputs import MARK, has_mark
 from ehdmaps.program import plain
-from ehdmaps.units import LOAD, SPEED, TEMPERATURE, Display
+from ehdmaps.units import LOAD, SPEED, TEMPERATURE, Display, quantity
 from ehdmaps.version import version
 
 
@@ -231,3 +233,55 @@ def _span(emap: EHDMap, axis: str, display: Display) -> str:
     values = emap.dataset[axis].values
     low, high = display.text(float(values[0])), display.text(float(values[-1]))
     return low if values.size == 1 else f"{low} to {high}"
+
+
+def chosen_kind(emap: EHDMap, contact: str | None, problems: Problems) -> LawKind:
+    """Read which contact law of a map --contact means; the whole of a bearing where it is not given.
+
+    Parameters
+    ----------
+    emap : EHDMap
+        The map.
+    contact : str, optional
+        What was given.
+    problems : list of str
+        Gets what is wrong.
+    """
+    names = [one.name for one in emap.contacts]
+    kinds: list[Any] = ["series", *names] if "inner" in names else names
+    if contact is not None and contact not in kinds:
+        problems.append(f"--contact: got {contact!r:.60}; allowed in this map: {', '.join(kinds)}")
+    return contact or kinds[0]  # type: ignore[return-value]
+
+
+def chosen_place(emap: EHDMap, axis: str, text: str | None, unit: str, display: Display, problems: Problems) -> float:
+    """Read --speed or --temperature within a map; a map with one value has it.
+
+    Parameters
+    ----------
+    emap : EHDMap
+        The map.
+    axis : str
+        entrainment_speed or temperature; the option is called after the last word.
+    text : str, optional
+        What was given.
+    unit : str
+        Unit of the axis.
+    display : Display
+        How its limits are shown.
+    problems : list of str
+        Gets what is wrong.
+    """
+    values, option = emap.axis(axis), f"--{axis.rpartition('_')[2]}"
+    # A standstill is a point of some maps, but between it and the lowest speed films fade by another rule.
+    low, high = float(min(values[values > 0.0], default=0.0)), float(values[-1])
+    value, limits = high, f"allowed in this map: {display.text(low)} to {display.text(high)}"
+    if text is None:
+        if values.size > 1:
+            problems.append(f"{option}: missing; {limits}")
+        return value
+    with problems.after(f"{option}: "):
+        value = quantity(text, unit)
+        if not low <= value <= high and value not in values:
+            raise InputError(f"got {text!r:.60}; {limits}")
+    return value

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.physics.catalogue import designated
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.designations.reader import ROLLERS, read_designation
@@ -177,7 +177,7 @@ def bearing_source(bearing: str | None, oil: str | None, given: object, needed: 
     InputError
         If both or none are given, or there is no such bearing or oil.
     """
-    problems = []
+    problems = Problems()
     if bearing is None and oil is not None:
         problems.append(f"--oil: got {oil!r:.60} without --bearing; allowed: with it; a job states its own oil")
     if bearing is None and given is None and needed:
@@ -185,13 +185,10 @@ def bearing_source(bearing: str | None, oil: str | None, given: object, needed: 
     if bearing is not None and given is not None:
         problems.append(f"--bearing: got {bearing!r:.60} beside a job or map; allowed: one of the two; leave one out")
     for option, text, read in (("--bearing", bearing, designated), ("--oil", oil, Lubricant.named)):
-        try:
+        with problems.after(f"{option}: "):
             if text is not None:
                 read(text)
-        except InputError as error:
-            problems += [f"{option}: {problem}" for problem in error.problems]
-    if problems:
-        raise InputError(problems)
+    problems.check()
     if bearing is None:
         return None
     given = read_designation(bearing)

@@ -21,7 +21,7 @@ from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.designations.estimates import estimated_parts
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solution import ContactSolver, contact_solution
-from ehdmaps.units import LOAD, SPEED, TEMPERATURE
+from ehdmaps.units import point_text
 
 Answer = tuple[float, float, float]
 """Stiffness, damping and thinner central film of a bearing, in proportion."""
@@ -110,7 +110,7 @@ def band_lines(job: Job) -> Iterator[str]:
         return
     point = OperatingPoint(*(axis[len(axis) // 2] for axis in (job.loads, job.entrainment_speeds, job.temperatures)))
     place = (
-        f"({LOAD.text(point.load)}, {SPEED.text(point.entrainment_speed)}, {TEMPERATURE.text(point.temperature)}, the "
+        f"({point_text(point.load, point.entrainment_speed, point.temperature)}, the "
         "middle of the map; load and speed of the bearing held)"
     )
     for what, band in (

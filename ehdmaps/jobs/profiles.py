@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import Problems
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.surface import CrownedProfile, TabulatedProfile
 from ehdmaps.units import FILM, LENGTH, closest, short
@@ -40,13 +40,11 @@ def read_profile(section: Table, geometry: BearingGeometry | None) -> RollerProf
         return "iso"
     from ehdmaps.jobs.table import Table
 
-    problems: list[str] = []
+    problems = Problems()
     table = Table(value, "profile", problems)
     found: RollerProfile | None = None
-    try:
+    with problems:
         found = _tabulated(table) if "positions" in value else _crowned(table, geometry)
-    except InputError as error:
-        problems += error.problems
     table.close()
     if found is not None and not problems and geometry is not None:
         problems += _reach_problems(found, geometry)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ehdmaps import inputs
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.jobs import defaults, solvers, table
 from ehdmaps.jobs.job import DEFAULT_CORRECTION_POINTS, MOST_CHECKS, MOST_POINTS, CorrectedBy, Job
 from ehdmaps.jobs.problem import LOAD_AXIS, TEMPERATURE_AXIS, read_axis, read_contacts, read_lubricant, read_speeds
@@ -334,12 +334,10 @@ def _check_heat(
 
 def _check_temperatures(oil: Lubricant, temperatures: tuple[float, ...], grid: Table) -> None:
     """Note where the oil's laws do not hold on the temperature axis (its first and last such value)."""
-    found: list[str] = []
+    found = Problems()
     for temperature in temperatures:
-        try:
+        with found:
             oil.at(temperature)
-        except InputError as error:
-            found.extend(error.problems)
     for problem in dict.fromkeys((found[0], found[-1]) if found else ()):
         grid.note("temperature", problem)
 

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray, IntArray
-from ehdmaps.errors import InputError, OutsideMapError
+from ehdmaps.errors import InputError, OutsideMapError, Problems
 from ehdmaps.maps.kernels.tables import EDGE_TOLERANCE, LOAD, LOAD_TOLERANCE, NOT_FINITE, SPEED, TEMPERATURE
 
 Axis = Literal["load", "entrainment_speed", "temperature"]
@@ -136,14 +136,13 @@ def check_finite(named: Mapping[str, FloatArray]) -> None:
     InputError
         With every array that holds one.
     """
-    problems = [
+    problems = Problems(
         f"contact law, {name}: got {values[~np.isfinite(values)].flat[0]} "
         f"({np.count_nonzero(~np.isfinite(values))} of {values.size}); allowed: finite numbers"
         for name, values in named.items()
         if not np.all(np.isfinite(values))
-    ]
-    if problems:
-        raise InputError(problems)
+    )
+    problems.check()
 
 
 _CAUSES: Mapping[Axis, int] = {"load": LOAD, "entrainment_speed": SPEED, "temperature": TEMPERATURE}

@@ -35,7 +35,7 @@ from ehdmaps.physics.moes import valley_load_number
 from ehdmaps.table.fields import NATURAL_FREQUENCIES
 from ehdmaps.table.file import film_table
 from ehdmaps.table.films import FilmTable, TableFilms
-from ehdmaps.units import LOAD, SPEED, TEMPERATURE
+from ehdmaps.units import point_text
 
 _STEP = 0.05
 """Step of zeta in the valley, about that of the nodes of the table."""
@@ -271,8 +271,8 @@ class TableField:
     def _refuse(self, read: TableFilms, i: int, load: float, speeds: FloatArray, temperatures: FloatArray) -> None:
         """Say what the table lacks."""
         raise MapError(
-            f"{read.reason.flat[i]!s} at {LOAD.text(load)}, {SPEED.text(float(speeds[i]))}, "
-            f'{TEMPERATURE.text(float(temperatures[i]))}; have the films solved: [solver] films = "solved"'
+            f"{read.reason.flat[i]!s} at {point_text(load, float(speeds[i]), float(temperatures[i]))}; have the films "
+            'solved: [solver] films = "solved"'
         )
 
     def knows(self, contact: str, speeds: FloatArray, temperatures: FloatArray) -> BoolArray:

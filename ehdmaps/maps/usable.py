@@ -18,8 +18,8 @@ from ehdmaps.maps.backbone_plan import zeta_span
 from ehdmaps.maps.schema import BACKBONE_DIMS, DIMS, NOT_NEEDED
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.solution import Status
-from ehdmaps.units import LOAD, SPEED, TEMPERATURE
+from ehdmaps.physics.solution import Status, usable_points
+from ehdmaps.units import LOAD, SPEED, TEMPERATURE, point_text
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -92,7 +92,7 @@ def known_grid(dataset: xr.Dataset, contacts: Sequence[LineContact]) -> tuple[Re
     names = [contact.name for contact in contacts]
     chosen = dataset.sel(contact=names).transpose(*DIMS, ...)
     filled = chosen["filled"].values.astype(bool) if "filled" in chosen else np.zeros(_shape(chosen), bool)
-    usable = np.isin(chosen["status"].values, [int(status) for status in Status if status.usable]) | filled
+    usable = usable_points(chosen["status"].values) | filled
     for name in FILMS:
         usable &= np.isfinite(chosen[name].values)
     # of filled points beside one another nothing is known
@@ -154,7 +154,7 @@ def check_backbone(
     """
     group = group.transpose(*BACKBONE_DIMS, ...)
     status = group["status"].values
-    usable = np.isin(status, [int(known) for known in Status if known.usable])
+    usable = usable_points(status)
     solved = usable & (group["film_offset"].values > 0.0)
     for name in FILMS:
         solved &= np.isfinite(group[name].values)
@@ -305,12 +305,7 @@ def _places(chosen: xr.Dataset, where: BoolArray) -> str:
     """Name the first few points."""
     names = []
     for i, j, k, m in np.argwhere(where)[:_SHOWN]:
-        load, speed, temperature = (
-            float(chosen[name].values[index])
-            for name, index in (("load", j), ("entrainment_speed", k), ("temperature", m))
-        )
-        names.append(
-            f"{chosen['contact'].values[i]} at {LOAD.text(load)}, {SPEED.text(speed)}, {TEMPERATURE.text(temperature)}"
-        )
+        at = (float(chosen[name].values[index]) for name, index in zip(schema.DIMS[1:], (j, k, m), strict=True))
+        names.append(f"{chosen['contact'].values[i]} at {point_text(*at)}")
     more = np.count_nonzero(where) - len(names)
     return "; ".join(names) + (f"; and {more} more" if more > 0 else "")

@@ -16,7 +16,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiling import cpu_seconds
-from ehdmaps.errors import InputError, SolverError
+from ehdmaps.errors import InputError, Problems, SolverError
 from ehdmaps.openfoam.case import working_case
 from ehdmaps.openfoam.fields import PointFields, read_point_fields
 from ehdmaps.openfoam.installation import NO_PATH, Installation, installation
@@ -107,11 +107,11 @@ class OpenFoamPointSolver:
 
     def __post_init__(self) -> None:
         limits = {"columns": (36, 216), "lines": (18, 81), "rows": (2, 64), "timeout": (0.1, 1e6)}
-        problems = [
+        problems = Problems(
             f"openfoam point solver, {name}: got {getattr(self, name)!r}; allowed: {low:g} to {high:g}"
             for name, (low, high) in limits.items()
             if not low <= getattr(self, name) <= high
-        ]
+        )
         if not problems and self.columns * self.lines > MOST_COLUMNS:
             got = f"{self.columns} x {self.lines}"
             problems.append(f"openfoam point solver, columns, lines: got {got}; allowed: {MOST_COLUMNS} in all")
@@ -120,8 +120,7 @@ class OpenFoamPointSolver:
                 f"openfoam point solver, keep_cases: got {str(self.keep_cases.absolute())!r}; OpenFOAM takes no spaces "
                 "or quotes in the path of a case; choose another folder"
             )
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     def solve(
         self,

@@ -14,7 +14,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiling import cpu_seconds
-from ehdmaps.errors import InputError, SolverError
+from ehdmaps.errors import InputError, Problems, SolverError
 from ehdmaps.openfoam.grid_solver import GridSolution, GridSolver
 from ehdmaps.openfoam.grids import Grids, with_rows
 from ehdmaps.openfoam.installation import NO_PATH, Installation, installation
@@ -168,12 +168,12 @@ class OpenFoamSolver(ContactSolverDefaults):
             "max_iterations": (1, 100_000),
             "timeout": (0.1, 1e6),
         }
-        problems = [
+        problems = Problems(
             f"openfoam solver, {name}: got {getattr(self, name)!r}; allowed: {low:g} to {high:g}; "
             "leave it out for the default"
             for name, (low, high) in limits.items()
             if not low <= getattr(self, name) <= high
-        ]
+        )
         problems += [
             f"openfoam solver, {name}: got {getattr(self, name)}; allowed: an even number; its half is the coarse grid"
             for name in ("columns", "rows")
@@ -189,17 +189,14 @@ class OpenFoamSolver(ContactSolverDefaults):
                 f"openfoam solver, slide_to_roll: got {self.slide_to_roll!r} with physics thermal; allowed: between -2 "
                 "and 2 without both, since a surface that stands has no steady temperature"
             )
-        try:
+        with problems.after("openfoam solver, "):
             self.shear_law()
-        except InputError as error:
-            problems += [f"openfoam solver, {problem}" for problem in error.problems]
         if self.keep_cases is not None and NO_PATH.search(str(self.keep_cases.absolute())):
             problems.append(
                 f"openfoam solver, keep_cases: got {str(self.keep_cases.absolute())!r}; OpenFOAM takes no spaces or "
                 "quotes in the path of a case; choose another folder"
             )
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     def shear_law(self) -> ShearLaw:
         """Law of the shear stress, in Pa."""

@@ -34,7 +34,7 @@ from dataclasses import dataclass, replace
 from typing import Generic, NamedTuple
 
 from ehdmaps.arrays import Values
-from ehdmaps.errors import InputError
+from ehdmaps.errors import Problems
 from ehdmaps.physics import approach
 from ehdmaps.physics.approach import STRUCTURAL_LAWS, StructuralLaw
 from ehdmaps.physics.solids import STEEL, Material, reduced_modulus
@@ -68,7 +68,7 @@ class OperatingPoint:
     temperature: float
 
     def __post_init__(self) -> None:
-        problems = []
+        problems = Problems()
         for name, unit, allowed, standstill in (
             ("load", "N/m", "finite and > 0", False),
             ("entrainment_speed", "m/s", "finite and >= 0; give its magnitude", True),
@@ -82,8 +82,7 @@ class OperatingPoint:
             else:
                 if not possible:
                     problems.append(f"{name}: got {value!r} {unit}; allowed: {allowed}")
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
 
 Force = tuple[float, float, float]
@@ -126,7 +125,7 @@ class LineContact:
 
     def __post_init__(self) -> None:
         where = f"contact {self.name!r}"
-        problems = []
+        problems = Problems()
         for key, value in (
             ("radius", self.radius),
             ("roller_length", self.roller_length),
@@ -157,8 +156,7 @@ class LineContact:
                 f"{where}, roller_length: got none; the {self.structural_law} law needs it; "
                 "give the length of the whole roller [m], or choose half_space with reference_depth"
             )
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     @property
     def reduced_modulus(self) -> float:

@@ -37,7 +37,7 @@ from typing import Any
 import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray, Values, as_given
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.lubricant import HEAT_CAPACITY, Lubricant
 from ehdmaps.physics.moes import moes_groups, valley_load_number
@@ -125,7 +125,7 @@ def thermal_loading(viscosity_slope: float, speed: float, conductivity: float) -
     >>> round(thermal_loading(-4.31e-3, speed=10.0, conductivity=0.134), 2)
     3.22
     """
-    problems = []
+    problems = Problems()
     if not (math.isfinite(viscosity_slope) and viscosity_slope <= 0):
         problems.append(f"viscosity_slope: got {viscosity_slope!r} Pa s/K; allowed: finite and <= 0; check its sign")
     if not math.isfinite(speed):
@@ -134,8 +134,7 @@ def thermal_loading(viscosity_slope: float, speed: float, conductivity: float) -
         problems.append(
             f"conductivity: got {conductivity!r} W/(m K); allowed: finite and > 0; mineral oils have about 0.13"
         )
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return -viscosity_slope * speed**2 / conductivity
 
 
@@ -179,7 +178,7 @@ def inlet_shear_heating_factor(
     >>> round(inlet_shear_heating_factor(1e9, 230.77e9, thermal_loading=1.0), 4)
     0.7772
     """
-    problems = [
+    problems = Problems(
         f"{key}: got {value!r}; allowed: finite and >= 0"
         for key, value in (
             ("max_pressure", max_pressure),
@@ -187,11 +186,10 @@ def inlet_shear_heating_factor(
             ("slide_to_roll", slide_to_roll),
         )
         if not (math.isfinite(value) and value >= 0)
-    ]
+    )
     if not (math.isfinite(reduced_modulus) and reduced_modulus > 0):
         problems.append(f"reduced_modulus: got {reduced_modulus!r} Pa; allowed: finite and > 0")
-    if problems:
-        raise InputError(problems)
+    problems.check()
     reduction: float = 13.2 * max_pressure / reduced_modulus * thermal_loading**0.42
     if reduction >= 1.0:
         raise InputError(
@@ -240,13 +238,12 @@ class HeatData:
 
     def __post_init__(self) -> None:
         values = ((entry.name, getattr(self, entry.name)) for entry in fields(self))
-        problems = [
+        problems = Problems(
             f"heat, {name}: got {value!r}; allowed: finite and > 0"
             for name, value in values
             if not (math.isfinite(value) and value > 0)
-        ]
-        if problems:
-            raise InputError(problems)
+        )
+        problems.check()
 
 
 def heat_data(lubricant: Lubricant, material: Material) -> HeatData:

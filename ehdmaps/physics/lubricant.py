@@ -14,7 +14,7 @@ from typing import Any, Literal, Required, TypedDict, Unpack
 import numpy as np
 
 from ehdmaps.arrays import Values, as_given
-from ehdmaps.errors import InputError, closest, label_problem, short
+from ehdmaps.errors import InputError, Problems, closest, label_problem, short
 from ehdmaps.physics.isotherm import FreeVolume, Isotherm, IsothermLaw, PressureViscosity, density
 from ehdmaps.physics.own_oil import (
     CLASSES,
@@ -197,7 +197,7 @@ class Lubricant:
 
     def __post_init__(self) -> None:
         where = f"lubricant {self.name!r}"
-        problems = [f"{where}, label: {problem}" for problem in label_problem(self.label)]
+        problems = Problems(f"{where}, label: {problem}" for problem in label_problem(self.label))
         if not (math.isfinite(self.density_15) and self.density_15 > 0):
             problems.append(
                 f"{where}, density: got {self.density_15!r} kg/m3; allowed: finite and > 0; oils have about 880 kg/m3"
@@ -219,8 +219,7 @@ class Lubricant:
             problems.append(
                 f"{where}, correlation: got {self.correlation!r} with a law whose numbers give alpha; allowed: none"
             )
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     @property
     def title(self) -> str:

@@ -46,7 +46,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.physics.lubricant import LubricantState
 
 NEWTONIAN, EYRING, CARREAU, LIMITING = range(4)
@@ -149,7 +149,7 @@ def shear_law(
     if not isinstance(shear, str) or shear not in SHEARS:
         raise InputError(f"shear: got {shear!r:.60}; allowed: {', '.join(SHEARS)}")
     form = SHEARS[shear]
-    problems = []
+    problems = Problems()
     keys = {
         "shear_stress": (shear_stress, form != NEWTONIAN),
         "limiting_ratio": (limiting_ratio, form == LIMITING),
@@ -163,8 +163,7 @@ def shear_law(
             problems.append(f"{key}: got {value!r} with shear {shear}, which has none; leave it out")
         elif not low <= value <= high:
             problems.append(f"{key}: got {value!r}; allowed: {low:g} to {high:g}; leave it out for the default")
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return ShearLaw(
         form,
         STRESSES.get(form, 1.0) if shear_stress is None else shear_stress,

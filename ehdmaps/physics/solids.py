@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import Problems
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Material:
     heat_capacity: float = 460.0
 
     def __post_init__(self) -> None:
-        problems = []
+        problems = Problems()
         if not (math.isfinite(self.youngs_modulus) and self.youngs_modulus > 0):
             problems.append(
                 f"youngs_modulus: got {self.youngs_modulus!r} Pa; allowed: finite and > 0; steel has 210e9 Pa"
@@ -55,8 +55,7 @@ class Material:
             problems.append(
                 f"heat_capacity: got {self.heat_capacity!r} J/(kg K); allowed: finite and > 0; steel has 460 J/(kg K)"
             )
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
 
 STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.3, density=7850.0)

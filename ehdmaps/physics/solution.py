@@ -20,8 +20,9 @@ from enum import IntEnum
 from typing import Protocol
 
 import numpy as np
+import numpy.typing as npt
 
-from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray
 from ehdmaps.physics.contact import LineContact, OperatingPoint, structured
 from ehdmaps.physics.hertz import natural_time
 from ehdmaps.physics.lubricant import Lubricant
@@ -149,6 +150,17 @@ class Status(IntEnum):
     def word(self) -> str:
         """The status as written in files and tables."""
         return self.name.lower()
+
+
+def usable_points(status: npt.ArrayLike) -> BoolArray:
+    """True where the numbers of points may be used, in the shape of their statuses.
+
+    Parameters
+    ----------
+    status : array_like of int
+        Values of `Status`.
+    """
+    return np.isin(status, [int(each) for each in Status if each.usable])
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

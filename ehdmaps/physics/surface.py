@@ -20,7 +20,7 @@ from types import MappingProxyType
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 
 _LONG = 2.5
 
@@ -86,13 +86,12 @@ class CrownedProfile:
     straight: float = 0.0
 
     def __post_init__(self) -> None:
-        problems = []
+        problems = Problems()
         if not (math.isfinite(self.radius) and self.radius > 0.0):
             problems.append(f"crowned profile, radius: got {self.radius!r} m; allowed: finite and > 0")
         if not (math.isfinite(self.straight) and self.straight >= 0.0):
             problems.append(f"crowned profile, straight: got {self.straight!r} m; allowed: finite and >= 0")
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     @classmethod
     def of_drop(cls, drop: float, roller_length: float, straight: float = 0.0) -> CrownedProfile:
@@ -240,7 +239,7 @@ class Surface:
     hardness: float = HARDNESS
 
     def __post_init__(self) -> None:
-        problems = []
+        problems = Problems()
         if not (self.roughness == 0.0 or FINEST <= self.roughness <= ROUGHEST):
             problems.append(
                 f"surface, roughness: got {self.roughness!r} m; allowed: {FINEST:g} to {ROUGHEST:g} m, or 0 (smooth)"
@@ -249,8 +248,7 @@ class Surface:
             value, unit = getattr(self, name), _UNITS.get(name, "")
             if not least <= value <= most:
                 problems.append(f"surface, {name}: got {value!r}{unit}; allowed: {least:g} to {most:g}{unit}")
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     @property
     def smooth(self) -> bool:

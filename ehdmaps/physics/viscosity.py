@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar, Literal, NamedTuple
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.physics.isotherm import FreeVolume, PressureViscosity
 
 ZERO_CELSIUS = 273.15
@@ -261,13 +261,12 @@ class TaitDoolittle:
     reference_temperature: float
 
     def __post_init__(self) -> None:
-        problems = [
+        problems = Problems(
             f"{key}: got {getattr(self, field)!r}{' ' * bool(unit)}{unit}; allowed: {low:g} to {high:g}"
             for field, key, low, high, unit, _ in self.parameters
             if not low <= getattr(self, field) <= high
-        ]
-        if problems:
-            raise InputError(problems)
+        )
+        problems.check()
 
     def at(self, temperature: float, viscosity: float) -> FreeVolume:
         """The isotherm of a temperature [K]; `viscosity` eta0 [Pa s] does not matter here."""
@@ -342,13 +341,12 @@ def _check_coefficients(cold: float | None, hot: float | None) -> None:
     """Refuse coefficients between which no logarithm can be interpolated, and one without the other."""
     if cold is None and hot is None:
         return
-    problems = [
+    problems = Problems(
         f"{key}: got {value!r} 1/Pa; allowed: finite and >= 0, > 0 if it varies; mineral oils have about 2e-8 1/Pa"
         for key, value in (("pressure_viscosity_40", cold), ("pressure_viscosity_100", hot))
         if value is None or not (math.isfinite(value) and value >= 0 and (value > 0 or cold == hot))
-    ]
-    if problems:
-        raise InputError(problems)
+    )
+    problems.check()
 
 
 def _coefficient(cold: float | None, hot: float | None, temperature: float) -> float | None:
@@ -416,18 +414,17 @@ class AstmViscosity:
     viscosity_100: float
 
     def __post_init__(self) -> None:
-        problems = [
+        problems = Problems(
             f"{key}: got {value!r} m2/s = {value / _MM2:.6g} mm2/s; allowed: finite and > 0.3 mm2/s; check its unit"
             for key, value in (("viscosity_40", self.viscosity_40), ("viscosity_100", self.viscosity_100))
             if not (math.isfinite(value) and value > 0.3 * _MM2)
-        ]
+        )
         if not problems and self.viscosity_100 >= self.viscosity_40:
             problems.append(
                 f"viscosity_100: got {self.viscosity_100 / _MM2:.6g} mm2/s; allowed: below viscosity_40 = "
                 f"{self.viscosity_40 / _MM2:.6g} mm2/s; exchange them?"
             )
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     @classmethod
     def through(cls, first: tuple[float, float], second: tuple[float, float]) -> AstmViscosity:

@@ -20,7 +20,7 @@ from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiling import stopwatch
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.physics.closed_form import CONTINUUM, NO_CONTINUUM, too_thick
 from ehdmaps.physics.hertz import LARGEST_PRESSURE, half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant
@@ -100,7 +100,7 @@ class FiniteRoller:
     corners: Sequence[float] = ()
 
     def __post_init__(self) -> None:
-        problems = [
+        problems = Problems(
             f"finite roller, {name}: got {value!r:.60} {unit}; allowed: finite and > 0"
             for name, value, unit in (
                 ("radius", self.radius, "m"),
@@ -108,9 +108,8 @@ class FiniteRoller:
                 ("reduced_modulus", self.reduced_modulus, "Pa"),
             )
             if not (isinstance(value, int | float) and math.isfinite(value) and value > 0.0)
-        ]
-        if problems:
-            raise InputError(problems)
+        )
+        problems.check()
 
     @property
     def kinks(self) -> tuple[float, ...]:
@@ -217,18 +216,17 @@ def solve_roller(
     >>> found.status.word, found.minimum_film < found.middle_film < found.central_film
     ('converged', True)
     """
-    problems = [
+    problems = Problems(
         f"finite roller, {name}: got {value!r:.60}; allowed: a finite number > 0 [{unit}]"
         for name, value, unit in (("load", load, "N"), ("entrainment_speed", entrainment_speed, "m/s"))
         if not (isinstance(value, int | float) and math.isfinite(value) and value > 0.0)
-    ]
+    )
     if not all(fine > coarse for fine, coarse in zip(resolution.fine, resolution.coarse, strict=True)):
         problems.append(
             f"finite roller, resolution: got cells {resolution.coarse} and {resolution.fine}; allowed: more in the "
             "second grid, along and across, as errors are stated by both"
         )
-    if problems:
-        raise InputError(problems)
+    problems.check()
     state = lubricant.at(temperature)
     modulus, radius, seconds = roller.reduced_modulus, roller.radius, stopwatch()
     asked = (float(load), float(entrainment_speed), temperature, roller)

@@ -16,7 +16,7 @@ import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.compiling import stopwatch
-from ehdmaps.errors import InputError
+from ehdmaps.errors import Problems
 from ehdmaps.physics.closed_form import CONTINUUM, NO_CONTINUUM, THICK_NOTE, THIN_FILM_LIMIT, too_thick
 from ehdmaps.physics.hertz import LARGEST_PRESSURE
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
@@ -167,13 +167,12 @@ def solve(
     >>> found.status.word, round(1e6 * found.central_film, 2), found.central_film.error < 0.03
     ('converged', 0.45, True)
     """
-    problems = [
+    problems = Problems(
         f"point contact, {name}: got {value!r:.60}; allowed: a finite number >= 0 [{unit}]"
         for name, value, unit in (("load", load, "N"), ("entrainment_speed", entrainment_speed, "m/s"))
         if not (isinstance(value, int | float) and math.isfinite(value) and value >= 0.0)
-    ]
-    if problems:
-        raise InputError(problems)
+    )
+    problems.check()
     state = lubricant.at(temperature)
     asked = None if frequencies is None else checked_frequencies(frequencies)
     where = (float(load), float(entrainment_speed), temperature, ellipse)

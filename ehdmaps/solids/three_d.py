@@ -21,7 +21,7 @@ from scipy.interpolate import CubicSpline
 from scipy.special import j0
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.errors import AnalysisError, InputError, Problems
 from ehdmaps.physics.solids import STEEL, Material
 
 _MOST_CHANGES = 200
@@ -139,13 +139,12 @@ class FiniteLine:
     flush: bool = False
 
     def __post_init__(self) -> None:
-        problems = []
+        problems = Problems()
         for name in ("radius", "length", "roller_depth", "race_depth"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
                 problems.append(f"finite line, {name}: got {value!r} m; allowed: finite and > 0")
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     @property
     def body_compliance(self) -> float:

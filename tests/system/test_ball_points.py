@@ -71,7 +71,7 @@ def test_no_load_is_told_and_ends_with_status_one(capsys):
         ),
         (["--films", "table", "--plot", "film.png"], "--plot: stands beside --films table"),
         (["--solver", "formula"], "--solver: got 'formula'; allowed: reynolds, openfoam"),
-        (["--frequency", "10 Hz", "1 Hz", "3"], "--frequency: got 10 Hz 1 Hz 3; allowed"),
+        (["--frequency", "10 Hz", "1 Hz", "3"], "--frequency: got 10 Hz to 1 Hz; allowed: TO above FROM"),
         (["--oil", "butter"], "--oil: "),
         (["--load", "100 N/mm"], "--load: got the unit 'N/mm'"),
     ],

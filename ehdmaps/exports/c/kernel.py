@@ -17,7 +17,7 @@ from typing import Literal
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.exports.c.text import array, comment, define, number, renamed, template
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.kernels import locked_film
@@ -200,7 +200,7 @@ class KernelOptions:
     prefix: str = "ehd"
 
     def __post_init__(self) -> None:
-        problems = []
+        problems = Problems()
         if not _NAME.fullmatch(self.prefix):
             problems.append(
                 f"export c, prefix: got {self.prefix!r}; allowed: lower-case letters, digits and _, a letter first"
@@ -209,8 +209,7 @@ class KernelOptions:
             problems.append(f"export c, slices: got {self.slices!r}; allowed: 1 to {_MOST_SLICES}")
         if self.clearance is not None and not math.isfinite(self.clearance):
             problems.append(f"export c, clearance: got {self.clearance!r}; allowed: a finite number of metres")
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
 
 def kernel_files(emap: EHDMap, options: KernelOptions, header: Sequence[str]) -> dict[str, str]:

@@ -23,7 +23,7 @@ from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solution import FilmSolution, contact_solution
-from ehdmaps.units import LOAD, SPEED, TEMPERATURE
+from ehdmaps.units import point_text
 
 QUANTITIES = (
     "approach",
@@ -70,8 +70,8 @@ class Question:
     @property
     def place(self) -> str:
         """Contact, load, speed and temperature, in words."""
-        load, speed, kelvin = self.point.load, self.point.entrainment_speed, self.point.temperature
-        return f"{self.contact.name}, {LOAD.text(load)}, {SPEED.text(speed)}, {TEMPERATURE.text(kelvin)}"
+        at = self.point
+        return f"{self.contact.name}, {point_text(at.load, at.entrainment_speed, at.temperature)}"
 
     @property
     def dry_compliance(self) -> float:

@@ -12,7 +12,7 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.batch import is_batch, read_batch
 from ehdmaps.jobs.make.batch_generate import plan_batch
 from ehdmaps.jobs.make.generate import FEW, planned_tasks, tasks_besides
-from ehdmaps.jobs.make.report import AXES, span
+from ehdmaps.jobs.make.report import AXES
 from ehdmaps.jobs.make.table_films import unserved
 from ehdmaps.jobs.make.tasks import line_tasks
 from ehdmaps.jobs.reader import read_job
@@ -20,7 +20,7 @@ from ehdmaps.jobs.supply import supply_words, surface_words
 from ehdmaps.physics.closed_form import film_change
 from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.table.solver import TableSolver
-from ehdmaps.units import LOAD, SPEED, TEMPERATURE
+from ehdmaps.units import point_text, span
 from ehdmaps.workers import available_cores
 
 UNSOLVED = " of the job itself, but no point that was tried has a solution"
@@ -110,7 +110,7 @@ def oil_lines(job: Job) -> Iterator[str]:
     change = film_change(job.contacts[0], state, load, speed, 1.0 + OFF)
     yield (
         f"  a pressure-viscosity that is {OFF:.0%} higher makes the film {change:.1%} thicker (film formula of Moes at "
-        f"{LOAD.text(load)}, {SPEED.text(speed)}, {TEMPERATURE.text(temperature)}, the middle of the map)"
+        f"{point_text(load, speed, temperature)}, the middle of the map)"
     )
 
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.executors import executor_problem, named_executor
 from ehdmaps.jobs.job import Job
@@ -58,13 +58,12 @@ def _batch(source: str, arguments: argparse.Namespace) -> tuple[str, int]:
         "--law-tolerance": arguments.law_tolerance is not None,
         '--fresh-films (say films = "solved" in [solver])': arguments.fresh_films,
     }
-    problems = [
+    problems = Problems(
         f"{option}: stands beside a batch file, {source}; allowed: with jobs; leave it out, or give a job"
         for option, given in beside.items()
         if given
-    ]
-    if problems:
-        raise InputError(problems)
+    )
+    problems.check()
     batch = read_batch(source, arguments.solver, to_run=True)
     folder = Path(arguments.output or batch.name)
     make_folder(folder)
@@ -90,7 +89,7 @@ def _batch(source: str, arguments: argparse.Namespace) -> tuple[str, int]:
 def _planned(arguments: argparse.Namespace) -> list[tuple[Job, Path]]:
     """All jobs with the maps that they become; all problems at once, before the first one is made."""
     several = len(arguments.jobs) > 1
-    problems = []
+    problems = Problems()
     if arguments.executor is not None and (problem := executor_problem(arguments.executor)):
         problems.append(problem)
     if several and arguments.output is not None:
@@ -110,8 +109,7 @@ def _planned(arguments: argparse.Namespace) -> list[tuple[Job, Path]]:
             problems += error.problems
         else:
             planned.append((job, output))
-    if problems:
-        raise InputError(tuple(problems))
+    problems.check()
     return planned
 
 

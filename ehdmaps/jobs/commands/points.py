@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.exports.mat import KIND as MATLAB
 from ehdmaps.exports.mat import ascii_text, write_matlab
 from ehdmaps.jobs.make.points.asked import MADE
@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace, source: str) -> tuple[str, int]:
         Designation of the bearing, or file of the map.
     """
     options = [name for name in _OF_LINES if getattr(arguments, name, None) not in (None, False)]
-    problems = [f"--{name.replace('_', '-')}: is one of line contacts; allowed: without it" for name in options]
+    problems = Problems(f"--{name.replace('_', '-')}: is one of line contacts; allowed: without it" for name in options)
     exported = arguments.command == "export"
     if exported and arguments.to not in EXPORTS:
         problems.append(
@@ -61,10 +61,8 @@ def run(arguments: argparse.Namespace, source: str) -> tuple[str, int]:
         )
     request = None
     if not os.path.exists(source):
-        try:
+        with problems:
             request = PointsRequest.named(source, arguments.oil)
-        except InputError as error:
-            problems += error.problems
         if exported and request is not None:
             request = _narrowed(request, arguments, problems)
     elif arguments.oil is not None:
@@ -75,8 +73,7 @@ def run(arguments: argparse.Namespace, source: str) -> tuple[str, int]:
                 problems.append(
                     f"--{option}: stands beside a map of points; allowed: with --bearing, read at that point"
                 )
-    if problems:
-        raise InputError(problems)
+    problems.check()
     name = Path(source if request is None else request.file_name)
     output = None if arguments.command == "show" or not arguments.output else Path(arguments.output)
     if arguments.command == "generate":
@@ -108,7 +105,7 @@ def run(arguments: argparse.Namespace, source: str) -> tuple[str, int]:
     return f"{path}: written", 0
 
 
-def _narrowed(request: PointsRequest, arguments: argparse.Namespace, problems: list[str]) -> PointsRequest:
+def _narrowed(request: PointsRequest, arguments: argparse.Namespace, problems: Problems) -> PointsRequest:
     """The request at the speed and temperature that were given, with so many loads."""
     chosen: dict[str, Any] = {}
     for name, field, unit, low, high, display in (
@@ -118,14 +115,11 @@ def _narrowed(request: PointsRequest, arguments: argparse.Namespace, problems: l
         text = getattr(arguments, name, None)
         if text is None:
             continue
-        try:
+        with problems.after(f"--{name}: "):
             value = quantity(text, unit)
-        except InputError as error:
-            problems.append(f"--{name}: {error.problems[0]}")
-            continue
-        if not low <= value <= high:
-            problems.append(f"--{name}: got {text!r:.60}; allowed: {display.text(low)} to {display.text(high)}")
-        chosen[field] = (value,)
+            if not low <= value <= high:
+                raise InputError(f"got {text!r:.60}; allowed: {display.text(low)} to {display.text(high)}")
+            chosen[field] = (value,)
     contact = getattr(arguments, "contact", None)
     if contact not in (None, *SIDES):
         problems.append(f"--contact: got {short(contact)} for point contacts; allowed: {', '.join(SIDES)}")

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import json
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -15,37 +13,34 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.choices import supply_from_text
 from ehdmaps.ehl.solver import ReynoldsSolver
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.problem import RING_SPEED_AXIS, SPEED_AXIS
 from ehdmaps.jobs.reader import read_job
+from ehdmaps.jobs.solve.contact_table import records_json
 from ehdmaps.jobs.solve.film_output import film_outputs
-from ehdmaps.jobs.solve.options import option_reader
+from ehdmaps.jobs.solve.options import HERTZ, Options, of_unit
 from ehdmaps.jobs.solve.point_report import point_place, point_record, point_table, supplied_record, supplied_table
 from ehdmaps.jobs.solve.spectrum import spectrum_dataset, spectrum_record, spectrum_table
 from ehdmaps.jobs.solve.traction import (
     LEAST_SLIP,
     MOST_SLIP,
     MOST_SLIPS,
+    STRESS,
     TractionRequest,
     solve_traction,
     traction_record,
     traction_table,
 )
 from ehdmaps.outputs import FIGURE, Output, check_outputs
-from ehdmaps.physics.contact import OIL_TEMPERATURES, LineContact, OperatingPoint
+from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.rheology import EYRING_STRESS, LIMITING_RATIO
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, Status, contact_solution
-from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, MOST_FREQUENCIES, contact_spectrum
+from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, contact_spectrum
 from ehdmaps.program import tell
-from ehdmaps.units import LENGTH, LOAD, RPM, SPEED, TEMPERATURE, Display, quantity, short
-
-_HERTZ = Display("Hz")
-
-_Reader = Callable[[str, str, str, float, float, Display], "float | None"]
-"""From option, text, unit, lowest and highest value, and their display; None where a problem was noted."""
+from ehdmaps.units import LENGTH, LOAD, Display
 
 
 @dataclass(frozen=True)
@@ -84,7 +79,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         point_record(solution, contact, job, point, frequency)
         for solution, contact in zip(solutions, job.contacts, strict=True)
     ]
-    text = _json(records) if arguments.json else point_table(job, records, point, request.length)
+    text = records_json(records) if arguments.json else point_table(job, records, point, request.length)
     return text, _exit_status(records)
 
 
@@ -108,7 +103,7 @@ def _over_frequency(arguments: argparse.Namespace, request: _Request) -> tuple[s
         }
         for contact in job.contacts
     ]
-    text = _json(records) if arguments.json else spectrum_table(job, dataset, request.length)
+    text = records_json(records) if arguments.json else spectrum_table(job, dataset, request.length)
     return text, _exit_status(records)
 
 
@@ -125,7 +120,7 @@ def _with_traction(
     ]
     if arguments.json:
         both = zip(records, solved, strict=True)
-        text = _json([{**record, **traction_record(slips, mu)} for record, (_, mu) in both])
+        text = records_json([{**record, **traction_record(slips, mu)} for record, (_, mu) in both])
     else:
         coefficients = {contact.name: mu for contact, (_, mu) in zip(job.contacts, solved, strict=True)}
         text = point_table(job, records, point, request.length) + "\n" + traction_table(slips, coefficients)
@@ -144,15 +139,10 @@ def _with_supply(
         for contact in job.contacts
     ]
     if arguments.json:
-        text = _json([{**record, **supplied_record(supply, films[record["contact"]])} for record in records])
+        text = records_json([{**record, **supplied_record(supply, films[record["contact"]])} for record in records])
     else:
         text = point_table(job, records, point, request.length) + "\n" + supplied_table(supply, films)
     return text, _exit_status(records)
-
-
-def _json(records: list[dict[str, Any]]) -> str:
-    """One object a contact."""
-    return json.dumps(records, indent=2, allow_nan=False)
 
 
 def _exit_status(records: list[dict[str, Any]]) -> int:
@@ -176,71 +166,51 @@ def _solved(solver: ContactSolver, contact: LineContact, request: _Request) -> C
 
 def _read(arguments: argparse.Namespace) -> _Request:
     """Read job, point, length and frequencies; all problems at once."""
-    problems: list[str] = []
+    problems = Problems()
     job: Job | None = None
     if arguments.films is not None:
         problems.append("--films: is one of the balls of a bearing; allowed: films = ... of [solver] in a job")
-    try:
+    with problems:
         job = read_job(arguments.job, arguments.solver, to_run=True)
-    except InputError as error:
-        problems.extend(error.problems)
 
-    read = option_reader(problems, None)
-
+    read = Options(problems)
     # of a load that does not read nobody knows whether it needs a length
-    total = _is_of_unit(arguments.load, "N")
+    total = of_unit(arguments.load, "N")
     if not total and arguments.length is not None:
-        total = not _is_of_unit(arguments.load, "N/m")
+        total = not of_unit(arguments.load, "N/m")
     length: float | None = None
-    load: float | None = None
     if arguments.length is not None:
-        length = read("--length", arguments.length, "m", 1e-6, 100.0, LENGTH)
+        length = read.quantity("--length", arguments.length, "m", (1e-6, 100.0), LENGTH)
     elif total:
         problems.append('--length: missing; a load in N needs the length that carries it; or give --load in "N/mm"')
     if not total:
-        load = read("--load", arguments.load, "N/m", 1.0, 1e7, LOAD)
+        load = read.quantity("--load", arguments.load, "N/m", (1.0, 1e7), LOAD)
     else:
-        force = read("--load", arguments.load, "N", 1e-6, 1e9, Display("N"))
-        load = force / length if force is not None and length is not None else None
-        if load is not None and not 1.0 <= load <= 1e7:
+        load = read.quantity("--load", arguments.load, "N", (1e-6, 1e9), Display("N")) / (length or math.nan)
+        if math.isfinite(load) and not 1.0 <= load <= 1e7:
             problems.append(
                 f"--load over --length: got {LOAD.text(load)}; allowed: {LOAD.text(1.0)} to {LOAD.text(1e7)}"
             )
-    speed: float | None = None
-    if not _is_of_unit(arguments.speed, "rad/s"):
-        speed = read("--speed", arguments.speed, SPEED_AXIS.unit, SPEED_AXIS.low, SPEED_AXIS.high, SPEED)
-    elif job is not None and job.bearing is not None:
-        fastest = job.bearing.inner_speed(SPEED_AXIS.high)
-        ring = read("--speed", arguments.speed, RING_SPEED_AXIS.unit, RING_SPEED_AXIS.low, fastest, RPM)
-        speed = None if ring is None else job.bearing.entrainment_speed(ring)
-    elif job is not None:
+    bearing, speeds = None if job is None else job.bearing, (SPEED_AXIS.low, SPEED_AXIS.high)
+    if job is not None and bearing is None and of_unit(arguments.speed, "rad/s"):
         problems.append(
             f"--speed: got {arguments.speed!r:.60}; allowed: m/s, since the job has a bare contact; rpm are those of "
             "the inner ring of a bearing"
         )
-    temperature = read("--temperature", arguments.temperature, "K", *OIL_TEMPERATURES, TEMPERATURE)
-    frequencies: FloatArray | None = None
-    if arguments.frequency is not None:
-        count = len(arguments.frequency)
-        if count not in (1, 3):
-            problems.append(f"--frequency: got {count} values; allowed: one, or FROM TO POINTS")
-        else:
-            frequencies = (_one_frequency if count == 1 else _frequencies)(arguments, read, problems)
+    fastest = math.inf if bearing is None else bearing.inner_speed(SPEED_AXIS.high)
+    speed = read.speed(arguments.speed, bearing, speeds, (RING_SPEED_AXIS.low, fastest))
+    temperature = read.temperature(arguments.temperature, None if job is None else job.lubricant)
+    frequencies = None if arguments.frequency is None else _frequencies(arguments, read, problems)
     if job is not None:
         job = _with_stated(arguments, job, problems)
-    traction = _traction(arguments, job, problems)
+    traction = _traction(arguments, job, read, problems)
     supply = _supply(arguments, job, problems)
-    if job is not None and temperature is not None:
-        try:
-            job.lubricant.at(temperature)
-        except InputError as error:
-            problems.extend(f"--temperature: {problem}" for problem in error.problems)
-    if problems or job is None or load is None or speed is None or temperature is None:
+    if problems or job is None:
         raise InputError(problems)
     return _Request(job, OperatingPoint(load, speed, temperature), length, frequencies, traction, supply)
 
 
-def _with_stated(arguments: argparse.Namespace, job: Job, problems: list[str]) -> Job:
+def _with_stated(arguments: argparse.Namespace, job: Job, problems: Problems) -> Job:
     """The job with physics, law of shear and sliding of the command line."""
     given = {key: getattr(arguments, key) for key in ("physics", "shear")}
     if _slips(arguments) == 1:
@@ -256,38 +226,27 @@ def _slips(arguments: argparse.Namespace) -> int:
     return len(arguments.slide_to_roll or ())
 
 
-def _one_frequency(arguments: argparse.Namespace, read: _Reader, problems: list[str]) -> FloatArray | None:
-    """The one frequency of --frequency, as an array; None for 0, the limit of slow motion."""
+def _frequencies(arguments: argparse.Namespace, read: Options, problems: Problems) -> FloatArray | None:
+    """The frequencies of --frequency; None where a problem was noted, and for 0 Hz, the limit of slow motion."""
+    if len(arguments.frequency) > 1:
+        if arguments.fields is not None:
+            problems.append("--fields: stands beside --frequency, but fields are at rest; delete one")
+        return read.frequencies(arguments.frequency)
     if arguments.fields is not None or arguments.plot is not None:
         problems.append("--frequency: stands beside --fields or --plot, whose film is at rest; leave it out")
     (text,) = arguments.frequency
-    value = read("--frequency", text, "Hz", 0.0, HIGHEST_FREQUENCY, _HERTZ)
-    if value is not None and 0.0 < value < LOWEST_FREQUENCY:
+    value = read.quantity("--frequency", text, "Hz", (0.0, HIGHEST_FREQUENCY), HERTZ)
+    if 0.0 < value < LOWEST_FREQUENCY:
         problems.append(
             f"--frequency: got {text!r}; allowed: 0 Hz, the limit of slow motion, and "
-            f"{_HERTZ.text(LOWEST_FREQUENCY)} to {_HERTZ.text(HIGHEST_FREQUENCY)}"
+            f"{HERTZ.text(LOWEST_FREQUENCY)} to {HERTZ.text(HIGHEST_FREQUENCY)}"
         )
     return np.array([value]) if value else None
 
 
-def _frequencies(arguments: argparse.Namespace, read: _Reader, problems: list[str]) -> FloatArray | None:
-    """The frequencies of --frequency FROM TO POINTS; None where a problem was noted."""
-    option = "--frequency"
-    if arguments.fields is not None:
-        problems.append("--fields: stands beside --frequency, but fields are at rest; delete one")
-    first, last, count = arguments.frequency
-    low, high = (read(option, text, "Hz", LOWEST_FREQUENCY, HIGHEST_FREQUENCY, _HERTZ) for text in (first, last))
-    if low is not None and high is not None and low >= high:
-        problems.append(f"{option}: got {first!r} to {last!r}; allowed: TO above FROM; or one of them alone")
-    points = int(count) if count.isascii() and count.isdigit() and len(count) <= 9 else -1
-    if not 2 <= points <= MOST_FREQUENCIES:
-        problems.append(f"{option}, POINTS: got {short(count)}; allowed: a whole number from 2 to {MOST_FREQUENCIES}")
-    elif low is not None and high is not None and low < high:
-        return np.geomspace(low, high, points)
-    return None
-
-
-def _traction(arguments: argparse.Namespace, job: Job | None, problems: list[str]) -> TractionRequest | None:
+def _traction(
+    arguments: argparse.Namespace, job: Job | None, read: Options, problems: Problems
+) -> TractionRequest | None:
     """Slips and stresses of --slide-to-roll FROM TO POINTS; None where there are none, or a problem was noted."""
     option, before = "--slide-to-roll", len(problems)
     if _slips(arguments) not in (0, 1, 3):
@@ -305,30 +264,18 @@ def _traction(arguments: argparse.Namespace, job: Job | None, problems: list[str
     for other in ("frequency", "fields", "plot"):
         if getattr(arguments, other) is not None:
             problems.append(f"{option}: stands beside --{other}; allowed: one of the two; delete one")
-    first, last = (_plain_number(option, text, LEAST_SLIP, MOST_SLIP, problems) for text in arguments.slide_to_roll[:2])
-    count = arguments.slide_to_roll[2]
-    points = int(count) if count.isascii() and count.isdigit() and len(count) <= 9 else -1
-    if not 2 <= points <= MOST_SLIPS:
-        problems.append(f"{option}, POINTS: got {short(count)}; allowed: a whole number from 2 to {MOST_SLIPS}")
-    if first is not None and last is not None and first >= last:
-        problems.append(f"{option}: got {first:g} to {last:g}; allowed: TO above FROM")
-    eyring = EYRING_STRESS
+    ratios = read.spaced(
+        option, arguments.slide_to_roll, lambda text: read.number(option, text, LEAST_SLIP, MOST_SLIP), MOST_SLIPS
+    )
+    eyring, ratio = EYRING_STRESS, LIMITING_RATIO
     if arguments.shear_stress is not None:
-        try:
-            eyring = quantity(arguments.shear_stress, "Pa")
-            if not 1e5 <= eyring <= 1e9:
-                problems.append(f"--shear-stress: got {arguments.shear_stress!r}; allowed: 0.1 MPa to 1000 MPa")
-        except InputError as error:
-            problems.append(f"--shear-stress: {error.problems[0]}")
-    ratio: float | None = LIMITING_RATIO
+        eyring = read.quantity("--shear-stress", arguments.shear_stress, "Pa", (1e5, 1e9), STRESS)
     if arguments.limiting_ratio is not None:
-        ratio = _plain_number("--limiting-ratio", arguments.limiting_ratio, 1e-3, 1.0, problems)
-    if len(problems) > before or first is None or last is None or ratio is None:
-        return None
-    return TractionRequest(np.geomspace(first, last, points), eyring, ratio)
+        ratio = read.number("--limiting-ratio", arguments.limiting_ratio, 1e-3, 1.0)
+    return None if len(problems) > before or ratios is None else TractionRequest(ratios, eyring, ratio)
 
 
-def _supply(arguments: argparse.Namespace, job: Job | None, problems: list[str]) -> OilSupply | None:
+def _supply(arguments: argparse.Namespace, job: Job | None, problems: Problems) -> OilSupply | None:
     """Supply of --supply; None where there is none, or a problem was noted."""
     if arguments.supply is None:
         return None
@@ -342,29 +289,6 @@ def _supply(arguments: argparse.Namespace, job: Job | None, problems: list[str])
         if getattr(arguments, other) is not None:
             option = other.replace("_", "-")
             problems.append(f"--supply: stands beside --{option}; allowed: one of the two; delete one")
-    try:
+    with problems.after("--supply: "):
         return supply_from_text(arguments.supply)
-    except InputError as error:
-        problems.extend(f"--supply: {problem}" for problem in error.problems)
-        return None
-
-
-def _plain_number(option: str, text: str, low: float, high: float, problems: list[str]) -> float | None:
-    """A bare number within its limits; None where a problem was noted."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if low <= value <= high:
-        return value
-    problems.append(f"{option}: got {short(text)}; allowed: a bare number from {low:g} to {high:g}")
     return None
-
-
-def _is_of_unit(text: str, unit: str) -> bool:
-    """Tell whether a quantity was given in a unit of this kind."""
-    try:
-        quantity(text, unit)
-    except InputError:
-        return False
-    return True

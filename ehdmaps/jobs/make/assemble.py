@@ -16,7 +16,7 @@ from ehdmaps.jobs.make.tasks import ERRORS_OF_SOME, FOUND_BY_SOME, LineTask, sol
 from ehdmaps.maps import schema
 from ehdmaps.maps.records import MODEL_ERRORS, contacts_json, derived, record_json
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.solution import ContactSolver, Status
+from ehdmaps.physics.solution import ContactSolver, usable_points
 from ehdmaps.provenance import code_hash
 from ehdmaps.version import version
 
@@ -218,18 +218,13 @@ def placed(job: Job, tasks: Sequence[LineTask], results: Mapping[str, Arrays]) -
 
 def only_usable(films: Mapping[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
     """Films with NaN for the numbers of points that are not usable."""
-    usable = _usable(films["status"])
+    usable = usable_points(films["status"])
     return {name: array if name in _ALWAYS else np.where(usable, array, np.nan) for name, array in films.items()}
-
-
-def _usable(status: npt.NDArray[Any]) -> BoolArray:
-    """True where the numbers of a point may be used."""
-    return np.isin(status, [int(known) for known in Status if known.usable])
 
 
 def _fill(job: Job, films: dict[str, npt.NDArray[Any]]) -> tuple[dict[str, npt.NDArray[Any]], BoolArray]:
     """Fill isolated holes; their error estimates stay NaN, since nobody estimated them."""
-    along_load, along_speed = isolated_holes(_usable(films["status"]))
+    along_load, along_speed = isolated_holes(usable_points(films["status"]))
     result = dict(films)
     for name in _FILLED_FIELDS:
         for holes, axis, coordinate in ((along_load, 1, job.loads), (along_speed, 2, job.entrainment_speeds)):

@@ -44,8 +44,8 @@ from ehdmaps.maps.backbone import LOSS_SCALE
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width, natural_time
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.solution import ContactSolver, Status
-from ehdmaps.units import LOAD, SPEED, TEMPERATURE
+from ehdmaps.physics.solution import ContactSolver, Status, usable_points
+from ehdmaps.units import point_text
 
 FEWEST = 4
 """Points with a solution by both solvers that a correction needs."""
@@ -326,8 +326,8 @@ def _places(job: Job, points: Sequence[SamplePoint]) -> Place:
 
 def _known(arrays: Arrays) -> BoolArray:
     """True where a point has a film that can be corrected, or correct."""
-    usable = np.isin(arrays["status"], [int(status) for status in Status if status.usable])
-    return np.asarray(usable & np.all(np.isfinite(Films.of(arrays)), axis=0) & (arrays["film_offset"] > 0.0))
+    finite = np.all(np.isfinite(Films.of(arrays)), axis=0)
+    return np.asarray(usable_points(arrays["status"]) & finite & (arrays["film_offset"] > 0.0))
 
 
 def _share(films: Films, where: Place) -> FloatArray:
@@ -397,11 +397,7 @@ def _too_few(points: Sequence[SamplePoint], cheap: Arrays, dear: Arrays) -> str:
     """Reason why there is no correction."""
     solved, ends = _known(cheap) & _known(dear), _ends(points, cheap, dear)
     lost = [i for i in range(len(points)) if not solved[i]]
-    where = "".join(
-        f", the first {points[i].contact.name} at {LOAD.text(points[i].load)}, {SPEED.text(points[i].speed)}, "
-        f"{TEMPERATURE.text(points[i].temperature)}"
-        for i in lost[:1]
-    )
+    where = "".join(f", the first {points[i].contact.name} at {point_text(*points[i][1:])}" for i in lost[:1])
     causes = Counter(": ".join(filter(None, (ends[i]["status"], ends[i].get("reason")))) for i in lost)
     listed = "".join(f"; {count} {cause}" for cause, count in causes.most_common(3))
     return (

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ehdmaps.arrays import BoolArray, FloatArray
+from ehdmaps.arrays import BoolArray
 from ehdmaps.errors import MapError
 from ehdmaps.jobs.make.correction import JUDGED
 from ehdmaps.maps import schema
@@ -20,7 +20,7 @@ from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.records import MODEL_ERRORS, SPACING_ERRORS, lubricant_from_json, record_from_json
 from ehdmaps.maps.schema import FILM_TABLE, OWN_POINTS, UNSERVED
 from ehdmaps.physics.closed_form import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM
-from ehdmaps.physics.solution import Status, tip_words
+from ehdmaps.physics.solution import Status, tip_words, usable_points
 from ehdmaps.program import plain
 from ehdmaps.units import (
     DAMPING,
@@ -32,7 +32,8 @@ from ehdmaps.units import (
     SPEED,
     STIFFNESS,
     TEMPERATURE,
-    Display,
+    point_text,
+    span,
 )
 
 AXES = (("load", LOAD), ("entrainment_speed", SPEED), ("temperature", TEMPERATURE))
@@ -70,8 +71,7 @@ LOG_TAIL = re.compile(r"; last lines of the log:.*")
 
 def holes(dataset: xr.Dataset) -> int:
     """Return the number of points without a solution, filled or not."""
-    usable = [int(status) for status in Status if status.usable]
-    return int(np.count_nonzero(~np.isin(dataset["status"].values, usable)))
+    return int(np.count_nonzero(~usable_points(dataset["status"].values)))
 
 
 def status_counts(dataset: xr.Dataset, roughness: float = 0.0) -> dict[str, BoolArray]:
@@ -198,12 +198,6 @@ def _corner(dataset: xr.Dataset, chosen: BoolArray) -> str:
         span(dataset[name].values[index[position]], display) for position, (name, display) in enumerate(AXES, start=1)
     ]
     return f"{' and '.join(names)}, {', '.join(ranges)}"
-
-
-def span(values: FloatArray, display: Display) -> str:
-    """Return the range of an axis in words."""
-    low, high = display.value(float(np.min(values))), display.value(float(np.max(values)))
-    return f"{low:.4g} {display.unit}" if low == high else f"{low:.4g} to {high:.4g} {display.unit}"
 
 
 def extrapolated_lines(dataset: xr.Dataset) -> Iterator[str]:
@@ -467,6 +461,5 @@ def _lines(dataset: xr.Dataset, record: Mapping[str, Any]) -> Iterator[str]:
 
 def _place(point: Mapping[str, Any]) -> str:
     """Say where a point lies."""
-    values = (("load", LOAD), ("entrainment_speed", SPEED), ("temperature", TEMPERATURE))
-    place = ", ".join(display.text(float(point[name])) for name, display in values)
+    place = point_text(*(float(point[name]) for name, _ in AXES))
     return f"{plain(point['contact'])} at {place}"

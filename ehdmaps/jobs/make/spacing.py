@@ -34,7 +34,7 @@ from ehdmaps.maps.backbone import FILMS
 from ehdmaps.maps.grid_field import GridField
 from ehdmaps.maps.records import SPACING_ERRORS
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.solution import ContactSolver, Status
+from ehdmaps.physics.solution import ContactSolver, usable_points
 
 SHARES = (0.25, 0.75)
 """Of the way from one load to the next, where a cell is looked at."""
@@ -186,8 +186,7 @@ def _missed(field: GridField, contact: LineContact, task: LineTask, arrays: Arra
     loads = np.array(task.loads)
     u, T = np.array([task.entrainment_speed]), np.array([task.temperature])
     read = [values[:, 0, 0] for values in field.films(contact.name, loads[:, None, None], u, T)]
-    usable = np.isin(arrays["status"], [int(status) for status in Status if status.usable])
-    true = [np.where(usable, arrays[name], np.nan) for name in FILMS]
+    true = [np.where(usable_points(arrays["status"]), arrays[name], np.nan) for name in FILMS]
     dry = contact.structural_compliance(loads)
     stiffer = (dry + read[1]) / (dry + true[1])
     ratios = true[0] / read[0], stiffer, np.maximum(true[2], 0.0) / read[2] * stiffer**2

@@ -24,10 +24,10 @@ from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.heat import ISOTHERMAL
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solids import Material
-from ehdmaps.physics.solution import ContactSolver, FilmSolution, FilmSpectrum, Status, no_spectrum
+from ehdmaps.physics.solution import ContactSolver, FilmSolution, FilmSpectrum, Status, no_spectrum, usable_points
 from ehdmaps.provenance import PACKAGES, code_hash
 from ehdmaps.table.solver import TableSolver
-from ehdmaps.units import LOAD, SPEED, TEMPERATURE
+from ehdmaps.units import LOAD, point_text
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -154,12 +154,9 @@ class LineTask:
     def where(self, points: Sequence[int]) -> str:
         """Say for people which of its points these are."""
         loads = [self.loads[point] for point in points]
-        load = LOAD.text(loads[0])
-        if len(loads) > 1:
-            load = f"{len(loads)} loads from {load} to {LOAD.text(loads[-1])}"
-        return (
-            f"{self.contact.name}, {load}, {SPEED.text(self.entrainment_speed)}, {TEMPERATURE.text(self.temperature)}"
-        )
+        first, *rest = point_text(loads[0], self.entrainment_speed, self.temperature).split(", ")
+        load = f"{len(loads)} loads from {first} to {LOAD.text(loads[-1])}" if len(loads) > 1 else first
+        return ", ".join([self.contact.name, load, *rest])
 
 
 def knows_heat(solver: ContactSolver) -> bool:
@@ -343,7 +340,7 @@ def _films(
         along = slice(first, first + task.points)
         arrays = with_later_fields(results[task.key])
         status[along, speed, temperature] = arrays["status"]
-        usable = np.isin(arrays["status"], [int(known) for known in Status if known.usable])
+        usable = usable_points(arrays["status"])
         for name, array in values.items():
             column = arrays[sources[name]]
             array[along, speed, temperature] = np.where(usable if column.ndim == 1 else usable[:, None], column, np.nan)

@@ -18,13 +18,14 @@ import xarray as xr
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.errors import InputError, MapError
-from ehdmaps.jobs.make.report import AXES, NONE_STATED, span
+from ehdmaps.jobs.make.report import AXES, NONE_STATED
 from ehdmaps.jobs.make.sampling import log_uniform
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import known_at
 from ehdmaps.maps.records import record_from_json
 from ehdmaps.physics.contact import structured
-from ehdmaps.physics.solution import Status
+from ehdmaps.physics.solution import usable_points
+from ehdmaps.units import point_text, span
 
 COMPARED_FILMS = (
     "stiffness",
@@ -316,7 +317,7 @@ def compare(
             if common == 0:
                 raise
             reason = str(error)
-    usable = _usable(here) & _usable(there)
+    usable = usable_points(here["status"]) & usable_points(there["status"])
     variables = [name for name in COMPARED if name in here and name in there] if common else []
     relative = {name: _relative(here[name].values, there[name].values, usable) for name in variables}
     left_out = {name: int(np.count_nonzero(np.isinf(values))) for name, values in relative.items()}
@@ -421,11 +422,6 @@ def _difference(name: str, relative: FloatArray, stated: FloatArray, left_out: i
         over_stated=float(np.median(ratio)) if ratio.size else np.nan,
         beyond_stated=float(np.mean(ratio > 1.0)) if ratio.size else np.nan,
     )
-
-
-def _usable(dataset: xr.Dataset) -> BoolArray:
-    """True where a point was solved; filled ones were not."""
-    return np.isin(dataset["status"].values, [int(status) for status in Status if status.usable])
 
 
 def _check_contacts(first: xr.Dataset, second: xr.Dataset, names: tuple[str, str]) -> None:
@@ -562,4 +558,4 @@ def _over(entry: Difference) -> str:
 
 def _place(place: Mapping[str, str | float]) -> str:
     """Say where a point lies."""
-    return ", ".join([str(place["contact"]), *(display.text(float(place[name])) for name, display in AXES)])
+    return f"{place['contact']}, {point_text(*(float(place[name]) for name, _ in AXES))}"

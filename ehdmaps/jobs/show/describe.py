@@ -19,7 +19,6 @@ from ehdmaps.jobs.make.report import (
     law_lines,
     reach_lines,
     spacing_lines,
-    span,
     status_lines,
     value_lines,
 )
@@ -48,9 +47,9 @@ from ehdmaps.maps.rough_layer import (
 from ehdmaps.physics.approach import FE_LOAD
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.solution import Status
+from ehdmaps.physics.solution import usable_points
 from ehdmaps.program import plain
-from ehdmaps.units import FILM, LENGTH, LOAD, PRESSURE, TEMPERATURE, Display
+from ehdmaps.units import FILM, LENGTH, LOAD, PRESSURE, TEMPERATURE, Display, span
 
 SHOWN_TEMPERATURES = (313.15, 373.15)
 """Where the oil's viscosity is shown [K]: those of its data sheet."""
@@ -302,7 +301,7 @@ def backbone_lines(backbone: xr.Dataset) -> Iterator[str]:
         f"  {solved} points: {sizes[0]} loads about the damping valley, {sizes[1]} speeds, {sizes[2]} temperatures"
         f"{whose}"
     )
-    bridged = solved - int(np.isin(status, [int(known) for known in Status if known.usable]).sum())
+    bridged = solved - int(usable_points(status).sum())
     if bridged:
         yield f"  {bridged} of them without a solution: single ones are bridged along their lines"
     if schema.NATURAL not in backbone.variables:

@@ -15,12 +15,12 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.exports.map_curves import curves, film_between, rough_layers
-from ehdmaps.figures import WARNING, typeset
+from ehdmaps.figures import WARNING, spread, typeset
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import FilmField, known_at
 from ehdmaps.maps.rough_layer import BOUNDARY, FILM_PARAMETER, MIXED
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.solution import Status
+from ehdmaps.physics.solution import Status, usable_points
 from ehdmaps.report.chart import (
     GREY,
     SEQUENCE,
@@ -231,7 +231,7 @@ def shown_speed(of: MapCurves, operated: Sequence[Operated]) -> float:
 
 def _spread(axis: FloatArray) -> FloatArray:
     """Some values of an axis, both ends among them."""
-    return axis[sorted({round(index) for index in np.linspace(0, axis.size - 1, min(axis.size, MOST_CURVES))})]
+    return axis[spread(axis.size, MOST_CURVES)]
 
 
 def _chart(
@@ -309,7 +309,7 @@ def _marks(
         line = here.sel(entrainment_speed=speed)
         values, status = display.factor * line[name].values, line["status"].values
         filled = line["filled"].values.astype(bool)
-        unsolved = ~np.isin(status, [int(known) for known in Status if known.usable])
+        unsolved = ~usable_points(status)
         limit = status == int(Status.ASYMPTOTE)
         plain = ~unsolved & ~limit & np.isfinite(values)
         yield Points("", loads[plain], values[plain], "dot", colour)

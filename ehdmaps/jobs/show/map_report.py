@@ -9,7 +9,7 @@ import xarray as xr
 
 from ehdmaps.arrays import IntArray
 from ehdmaps.errors import MapError
-from ehdmaps.figures import typeset
+from ehdmaps.figures import spread, typeset
 from ehdmaps.jobs.make.report import (
     AXES,
     NONE_STATED,
@@ -19,7 +19,6 @@ from ehdmaps.jobs.make.report import (
     holes,
     law_rows,
     spacing_lines,
-    span,
     status_rows,
     tip_line,
 )
@@ -38,12 +37,12 @@ from ehdmaps.jobs.supply import supply_words
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.bearing import BearingGeometry
-from ehdmaps.physics.solution import Status
+from ehdmaps.physics.solution import Status, usable_points
 from ehdmaps.program import plain
 from ehdmaps.report.chart import number, shown
 from ehdmaps.report.page import Markup, Section, document, joined, pairs, sentences, table, tag
 from ehdmaps.trade.record import Trade
-from ehdmaps.units import DAMPING, FILM, LOAD, SPEED, STIFFNESS, TEMPERATURE
+from ehdmaps.units import DAMPING, FILM, LOAD, SPEED, STIFFNESS, TEMPERATURE, point_text, span
 from ehdmaps.version import version
 
 MOST_TEMPERATURES = 6
@@ -135,13 +134,9 @@ def _thinnest(dataset: xr.Dataset) -> str:
     values = np.where(film.values > 0.0, film.values, np.nan)
     if not np.isfinite(values).any():
         return ""
-    i, j, k, m = np.unravel_index(int(np.nanargmin(values)), values.shape)
-    return (
-        f"The thinnest film is {1e6 * values[i, j, k, m]:.3g} um: {dataset['contact'].values[i]} contact at "
-        f"{LOAD.text(float(dataset['load'].values[j]))}, "
-        f"{SPEED.text(float(dataset['entrainment_speed'].values[k]))}, "
-        f"{TEMPERATURE.text(float(dataset['temperature'].values[m]))}."
-    )
+    at = film.isel(dict(zip(schema.DIMS, np.unravel_index(int(np.nanargmin(values)), values.shape), strict=True)))
+    place = point_text(*(float(at[name]) for name in schema.DIMS[1:]))
+    return f"The thinnest film is {1e6 * float(at):.3g} um: {at['contact'].item()} contact at {place}."
 
 
 def _states(dataset: xr.Dataset) -> IntArray:
@@ -149,7 +144,7 @@ def _states(dataset: xr.Dataset) -> IntArray:
     ordered = dataset.transpose(*schema.DIMS, ...)
     status, filled = ordered["status"].values, ordered["filled"].values.astype(bool)
     reason = np.vectorize(bool, otypes=[bool])(ordered["reason"].values)
-    unsolved = ~np.isin(status, [int(known) for known in Status if known.usable])
+    unsolved = ~usable_points(status)
     limit = status == int(Status.ASYMPTOTE)
     doubtful = reason | ordered["viscosity_extrapolated"].values.astype(bool)
     return np.select([unsolved & ~filled, unsolved, limit, doubtful], [4, 3, 2, 1], 0)
@@ -159,9 +154,8 @@ def _drawings(emap: EHDMap, prefix: str) -> Iterator[Markup]:
     """A drawing of the points over load and speed for each contact and some temperatures."""
     dataset, states = emap.dataset, _states(emap.dataset)
     axis = dataset["temperature"].values
-    chosen = sorted({round(i) for i in np.linspace(0, axis.size - 1, min(axis.size, MOST_TEMPERATURES))})
     for contact in range(states.shape[0]):
-        for index in chosen:
+        for index in spread(axis.size, MOST_TEMPERATURES):
             name = str(dataset["contact"].values[contact])
             title = f"{name} contact, {typeset(TEMPERATURE.text(float(axis[index])))}"
             drawn = _drawing(dataset, states[contact, :, :, index], title, f"{prefix}-limits-{contact}-{index}")

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ehdmaps.choices import MAP_CHOICES, texts_of
-from ehdmaps.errors import InputError
+from ehdmaps.errors import Problems
 
 if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
@@ -32,20 +32,16 @@ def open_given(path: str | PathLike[str], arguments: argparse.Namespace | None =
     InputError
         If a choice is none, or does not suit the map; if a job is wrong, or its films have to be solved.
     """
-    problems: list[str] = []
+    problems = Problems()
     chosen = [] if arguments is None else [
         (choice, value) for choice in MAP_CHOICES for value in choice.values(texts_of(arguments, choice), problems)
     ]  # fmt: skip
-    if problems:
-        raise InputError(problems)
+    problems.check()
     emap = _of_job(path) if _is_job(path) else _of_file(path)
     for choice, value in chosen:
-        try:
+        with problems.after(f"--{choice.name}: "):
             emap = choice.change(emap, value)
-        except InputError as error:
-            problems += [f"--{choice.name}: {problem}" for problem in error.problems]
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return emap
 
 

@@ -17,8 +17,8 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, NullLocator
 
 from ehdmaps.exports.map_curves import law_field
-from ehdmaps.figures import keep_within, typeset
-from ehdmaps.jobs.make.report import span, status_counts
+from ehdmaps.figures import keep_within, spread, typeset
+from ehdmaps.jobs.make.report import status_counts
 from ehdmaps.jobs.show.plot_curves import (
     ASYMPTOTE,
     BELOW,
@@ -30,16 +30,15 @@ from ehdmaps.jobs.show.plot_curves import (
     Sheet,
     draw_curves,
     keep_corners_free,
-    spread,
 )
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.records import record_from_json
 from ehdmaps.outputs import write_figure
 from ehdmaps.physics.closed_form import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM
-from ehdmaps.physics.solution import Status
+from ehdmaps.physics.solution import Status, usable_points
 from ehdmaps.program import plain
-from ehdmaps.units import DAMPING, FILM, LOAD, PRESSURE, SPEED, STIFFNESS, TEMPERATURE, Display
+from ehdmaps.units import DAMPING, FILM, LOAD, PRESSURE, SPEED, STIFFNESS, TEMPERATURE, Display, span
 
 A4_LANDSCAPE = (11.69, 8.27)
 MOST_TEMPERATURES = 6
@@ -341,7 +340,7 @@ def mark_entries(sheet: Sheet) -> list[Line2D | Patch]:
     """
     dataset = sheet.dataset
     status, filled = dataset["status"].values, dataset["filled"].values.astype(bool)
-    unsolved = ~np.isin(status, [int(known) for known in Status if known.usable])
+    unsolved = ~usable_points(status)
     entries: list[Line2D | Patch] = []
     if sheet.extrapolated_from:
         oil = sheet.emap.lubricant

@@ -14,10 +14,10 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullLocat
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.exports.map_curves import curves
-from ehdmaps.figures import WARNING
+from ehdmaps.figures import WARNING, spread
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import FilmField, known_at
-from ehdmaps.physics.solution import Status
+from ehdmaps.physics.solution import Status, usable_points
 from ehdmaps.units import LOAD, Display
 
 MOST_CURVES = 12
@@ -163,7 +163,7 @@ def _marks(
     asymptote = status == int(Status.ASYMPTOTE)
     axes.plot(loads[asymptote], curve[asymptote], ls="", mec=colour, **ASYMPTOTE)
     axes.plot(loads[filled], curve[filled], ls="", **FILLED)
-    unsolved = ~np.isin(status, [int(known) for known in Status if known.usable]) & ~filled
+    unsolved = ~usable_points(status) & ~filled
     low = np.full(np.count_nonzero(unsolved), 0.03)
     axes.plot(loads[unsolved], low, ls="", **LOST, transform=axes.get_xaxis_transform())
 
@@ -236,8 +236,3 @@ def _lowest(speeds: FloatArray) -> float:
     """Return the lowest speed above zero."""
     positive = speeds[speeds > 0]
     return float(positive.min()) if positive.size else 1e-6
-
-
-def spread(size: int, most: int) -> list[int]:
-    """Return at most so many indices, spread over an axis, both ends among them."""
-    return sorted({round(index) for index in np.linspace(0, size - 1, min(size, most))})

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from ehdmaps.figures import WARNING, typeset
+from ehdmaps.figures import WARNING, spread, typeset
 from ehdmaps.jobs.show.plot import (
     A4_LANDSCAPE,
     FONT,
@@ -24,7 +24,7 @@ from ehdmaps.jobs.show.plot import (
     write_estimated,
     write_line,
 )
-from ehdmaps.jobs.show.plot_curves import Sheet, draw_curves, keep_corners_free, spread
+from ehdmaps.jobs.show.plot_curves import Sheet, draw_curves, keep_corners_free
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.rough_layer import (
     BOUNDARY,

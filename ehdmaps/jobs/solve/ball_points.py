@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import json
 import math
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,10 +12,17 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiling import stopwatch
-from ehdmaps.errors import InputError
-from ehdmaps.jobs.solve.options import option_reader
+from ehdmaps.errors import InputError, Problems
+from ehdmaps.jobs.solve.contact_table import (
+    Row,
+    number_rows,
+    records_json,
+    rows_text,
+    shown_with_error,
+    with_errors,
+)
+from ehdmaps.jobs.solve.options import Options
 from ehdmaps.outputs import FIGURE, Output, output_problems
-from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, heat_data
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
@@ -27,16 +32,14 @@ from ehdmaps.physics.point.film_formulas import point_films
 from ehdmaps.physics.point.inlet_heat import heat_note
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import Estimate, Status
-from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, MOST_FREQUENCIES
 from ehdmaps.point.solver import PointResponse, PointSolution, heated_solution, solve
 from ehdmaps.program import tell
-from ehdmaps.units import DAMPER, FILM, LENGTH, PRESSURE, RPM, SPEED, SPRING, TEMPERATURE, Display, short
+from ehdmaps.units import DAMPER, FILM, LENGTH, PRESSURE, SPEED, SPRING, TEMPERATURE, Display, short
 
 if TYPE_CHECKING:
     from ehdmaps.jobs.solve.cfd_points import CfdPoints
 
 FORCE = Display("N")
-_HERTZ = Display("Hz")
 
 NUMBERS = (
     ("largest pressure", "max_pressure", PRESSURE),
@@ -100,7 +103,11 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
         write_page(request.plot, points_figure, solutions, _heading(request))
         tell(f"{request.plot}: written")
-    text = _json(solutions, request.inlet_heat) if arguments.json else _table(request, solutions)
+    text = (
+        records_json(_record(request, *one) for one in solutions.items())
+        if arguments.json
+        else _table(request, solutions)
+    )
     return text, 0 if all(solution.status.usable for solution in solutions.values()) else 1
 
 
@@ -181,7 +188,7 @@ def read_point(
 
 def _read(arguments: argparse.Namespace) -> _Request:
     """Read the arguments; all problems at once."""
-    problems: list[str] = []
+    problems = Problems()
     if arguments.job is not None and arguments.bearing is not None:
         problems.append(f"--bearing: got {short(arguments.bearing)} beside a job; allowed: one of the two")
     for name in _OF_LINES:
@@ -195,32 +202,18 @@ def _read(arguments: argparse.Namespace) -> _Request:
     by_cfd = arguments.solver == OPENFOAM
     problems += _of_the_other_solver(arguments, by_cfd)
 
-    read = option_reader(problems, math.nan)
+    read = Options(problems)
 
     bearing: BallGeometry | None = None
     oil: Lubricant | None = None
-    try:
+    with problems:
         bearing = ball_estimate(arguments.job or arguments.bearing)
-    except InputError as error:
-        problems.extend(error.problems)
-    try:
+    with problems.after("--oil: "):
         oil = Lubricant.named(arguments.oil or DEFAULT_OIL)
-    except InputError as error:
-        problems.extend(f"--oil: {problem}" for problem in error.problems)
-    load = read("--load", arguments.load, "N", 0.0, 1e9, FORCE)
-    if any(unit in arguments.speed for unit in ("rpm", "rad")):
-        ring = read("--speed", arguments.speed, "rad/s", 0.0, _FASTEST, RPM)
-        speed = bearing.entrainment_speed(ring) if bearing is not None else math.nan
-    else:
-        speed = read("--speed", arguments.speed, "m/s", 0.0, 1e3, SPEED)
-    temperature = read("--temperature", arguments.temperature, "K", *OIL_TEMPERATURES, TEMPERATURE)
-    frequencies = None
-    if arguments.frequency is not None:
-        ends = [
-            read("--frequency", text, "Hz", LOWEST_FREQUENCY, HIGHEST_FREQUENCY, _HERTZ)
-            for text in arguments.frequency[:2]
-        ]
-        frequencies = _spaced(arguments.frequency, ends, problems)
+    load = read.quantity("--load", arguments.load, "N", (0.0, 1e9), FORCE)
+    speed = read.speed(arguments.speed, bearing, (0.0, 1e3), (0.0, _FASTEST))
+    temperature = read.temperature(arguments.temperature, oil)
+    frequencies = None if arguments.frequency is None else read.frequencies(arguments.frequency)
     films = SOLVED if arguments.films is None else arguments.films
     if films not in (SOLVED, TABLE):
         problems.append(f"--films: got {short(films)}; allowed: {SOLVED}, {TABLE}")
@@ -232,15 +225,8 @@ def _read(arguments: argparse.Namespace) -> _Request:
     if by_cfd:
         from ehdmaps.jobs.solve.cfd_points import cfd_points
 
-        try:
+        with problems:
             cfd = cfd_points(arguments.fields, arguments.keep_cases, CONTACTS)
-        except InputError as error:
-            problems.extend(error.problems)
-    if oil is not None and math.isfinite(temperature):
-        try:
-            oil.at(temperature)
-        except InputError as error:
-            problems.extend(f"--temperature: {problem}" for problem in error.problems)
     if problems or bearing is None or oil is None:
         raise InputError(problems)
     plot = None if arguments.plot is None else Path(arguments.plot)
@@ -248,7 +234,7 @@ def _read(arguments: argparse.Namespace) -> _Request:
     return _Request(bearing, oil, load, speed, temperature, frequencies, films, heat, plot, cfd)
 
 
-def _physics(arguments: argparse.Namespace, oil: Lubricant | None, problems: list[str]) -> str:
+def _physics(arguments: argparse.Namespace, oil: Lubricant | None, problems: Problems) -> str:
     """Physics of the films by --physics: isothermal, or with heat in the inlet."""
     physics = getattr(arguments, "physics", None) or ISOTHERMAL
     if physics not in (ISOTHERMAL, INLET_HEAT):
@@ -267,10 +253,8 @@ def _physics(arguments: argparse.Namespace, oil: Lubricant | None, problems: lis
     if arguments.solver == OPENFOAM:
         problems.append(f"--physics: got {physics} beside --solver {OPENFOAM}; allowed: --solver {REYNOLDS}")
     if oil is not None:
-        try:
+        with problems.after("--physics: "):
             heat_data(oil, STEEL)
-        except InputError as error:
-            problems.extend(f"--physics: {problem}" for problem in error.problems)
     return physics
 
 
@@ -290,21 +274,6 @@ def _of_the_other_solver(arguments: argparse.Namespace, by_cfd: bool) -> list[st
     return problems
 
 
-def _spaced(given: Sequence[str], ends: list[float], problems: list[str]) -> FloatArray | None:
-    """Frequencies of --frequency: one, or FROM TO POINTS."""
-    if len(given) == 1:
-        return np.array(ends)
-    count = given[-1]
-    points = int(count) if len(given) == 3 and count.isascii() and count.isdigit() and len(count) <= 9 else -1
-    if not 2 <= points <= MOST_FREQUENCIES or ends[0] >= ends[1]:
-        problems.append(
-            f"--frequency: got {' '.join(given):.60}; allowed: one, or FROM TO POINTS, TO above FROM and 2 to "
-            f"{MOST_FREQUENCIES} of them"
-        )
-        return None
-    return np.geomspace(ends[0], ends[1], points)
-
-
 def _heading(request: _Request) -> str:
     """Bearing, oil and point in words."""
     by = "" if request.cfd is None else ", OpenFOAM"
@@ -312,14 +281,8 @@ def _heading(request: _Request) -> str:
     return f"{request.bearing.title}, {request.oil.title}{by}, {point_films(request.inlet_heat)}: {place}"
 
 
-def _json(solutions: dict[str, PointSolution], inlet_heat: bool) -> str:
-    """One object a contact, SI."""
-    records = [_record(name, solution, inlet_heat) for name, solution in solutions.items()]
-    return json.dumps(records, indent=2, allow_nan=False)
-
-
-def _record(name: str, solution: PointSolution, inlet_heat: bool) -> dict[str, Any]:
-    """Plain values of a contact; None where there is no number."""
+def _record(request: _Request, name: str, solution: PointSolution) -> dict[str, Any]:
+    """Plain values of a contact."""
     a, b = solution.ellipse.semi_axes(solution.load)
     values: dict[str, Any] = {
         "contact": name,
@@ -335,7 +298,7 @@ def _record(name: str, solution: PointSolution, inlet_heat: bool) -> dict[str, A
         "steps": solution.steps,
         "solve_seconds": solution.solve_seconds,
         "viscosity_extrapolated": solution.viscosity_extrapolated,
-        "films": point_films(inlet_heat),
+        "films": point_films(request.inlet_heat),
         "status": solution.status.word,
         "reason": solution.reason,
     }
@@ -344,51 +307,34 @@ def _record(name: str, solution: PointSolution, inlet_heat: bool) -> dict[str, A
         values["frequency"] = response.frequencies.tolist()
         for key in ("stiffness", "damping", "stiffness_error", "damping_error"):
             values[f"{key}_over_frequency"] = getattr(response, key).tolist()
-    return {
-        key: None if isinstance(value, float) and not math.isfinite(value) else value for key, value in values.items()
-    }
+    return values
 
 
 def _table(request: _Request, solutions: dict[str, PointSolution]) -> str:
     """The printed table: a column a contact, each number with its error."""
     found = list(solutions.values())
     axes = [solution.ellipse.semi_axes(solution.load) for solution in found]
-    plain = Display("")
-    rows: list[tuple[str, str, list[str]]] = [
+    pressures = [PRESSURE.value(float(solution.ellipse.max_pressure(solution.load))) for solution in found]
+    plain, how = Display(""), "read" if request.films == TABLE else "solve"
+    rows: list[Row] = [
         ("status", "", [solution.status.word for solution in found]),
         ("ellipticity", "", [f"{solution.ellipse.ellipticity:.4g}" for solution in found]),
         ("M", "", [shown_with_error(solution.load_number, math.nan, plain) for solution in found]),
         ("L", "", [shown_with_error(solution.oil_number, math.nan, plain) for solution in found]),
         ("Hertz semi-axes", LENGTH.unit, [f"{LENGTH.value(a):.4g} x {LENGTH.value(b):.4g}" for a, b in axes]),
-        (
-            "Hertz pressure",
-            PRESSURE.unit,
-            [f"{PRESSURE.value(float(solution.ellipse.max_pressure(solution.load))):.4g}" for solution in found],
-        ),
+        ("Hertz pressure", PRESSURE.unit, [f"{pressure:.4g}" for pressure in pressures]),
+        *number_rows(found, NUMBERS),
+        (f"processor time to {how}", "ms", [f"{1e3 * solution.solve_seconds:.3g}" for solution in found]),
     ]
-    for label, name, display in NUMBERS:
-        shown = [shown_with_error(getattr(each, name), getattr(each, name).error, display) for each in found]
-        rows.append((label, display.unit, shown))
-    rows.append(
-        (
-            "processor time to read" if request.films == TABLE else "processor time to solve",
-            "ms",
-            [f"{1e3 * solution.solve_seconds:.3g}" for solution in found],
-        )
-    )
-    lines = [_heading(request)]
-    if request.bearing.estimated:
-        lines.append(request.bearing.estimated)
-    lines += [f"  {'':18s}{'':8s}" + "".join(f"{name:>24s}" for name in solutions)]
-    lines += [f"  {label:18s}{unit:8s}" + "".join(f"{value:>24s}" for value in shown) for label, unit, shown in rows]
+    more: list[str] = []
     for name, solution in solutions.items():
         if solution.reason:
-            lines.append(f"{name}: {solution.reason}")
+            more.append(f"{name}: {solution.reason}")
         if solution.viscosity_extrapolated:
-            lines.append(f"{name}: viscosity extrapolated: pressure above {request.oil.reach}")
+            more.append(f"{name}: viscosity extrapolated: pressure above {request.oil.reach}")
         if solution.response is not None:
-            lines += ["", *_over_frequency(name, solution)]
-    return "\n".join(line.rstrip() for line in lines)
+            more += ["", *_over_frequency(name, solution)]
+    return rows_text([_heading(request), request.bearing.estimated], solutions, rows, more)
 
 
 def _over_frequency(name: str, solution: PointSolution) -> list[str]:
@@ -402,33 +348,3 @@ def _over_frequency(name: str, solution: PointSolution) -> list[str]:
             f"{frequency:21.5g}{shown_with_error(k, k_error, SPRING):>24s}{shown_with_error(c, c_error, DAMPER):>24s}"
         )
     return lines
-
-
-def with_errors(solution: Any, names: Iterable[str]) -> dict[str, float]:
-    """Numbers of a solution and their errors, by name.
-
-    Parameters
-    ----------
-    solution : PointSolution or RollerSolution
-        The solution.
-    names : iterable of str
-        Names of its estimates.
-    """
-    found = {name: getattr(solution, name) for name in names}
-    return {key: value for name, one in found.items() for key, value in ((name, one), (f"{name}_error", one.error))}
-
-
-def shown_with_error(value: float, error: float, display: Display) -> str:
-    """A number with its error in per cent; a dash where there is none.
-
-    Parameters
-    ----------
-    value, error : float
-        Number in SI, and its error relative to it, NaN for none.
-    display : Display
-        Unit that is shown.
-    """
-    if not math.isfinite(value):
-        return "-"
-    text = f"{display.value(value):.5g}"
-    return text if not math.isfinite(error) else f"{text} +-{100.0 * error:.2g} %"

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.extras import lacking
 from ehdmaps.jobs import solvers
 from ehdmaps.openfoam.fields import write_fields
@@ -90,7 +90,7 @@ def cfd_points(fields: str | None, keep_cases: str | None, contacts: tuple[str, 
     InputError
         If OpenFOAM or `ehlFoam` is missing, or a file or folder may not be written.
     """
-    problems: list[str] = []
+    problems = Problems()
     if fields is not None:
         problems += lacking("openfoam", "meshio", "--fields")
         problems += output_problems([Output("--fields", fields_path(Path(fields), name), FIELDS) for name in contacts])
@@ -98,8 +98,7 @@ def cfd_points(fields: str | None, keep_cases: str | None, contacts: tuple[str, 
         solver = OpenFoamPointSolver(**solvers.case_options("openfoam", keep_cases))
     except InputError as error:
         raise InputError([*problems, *error.problems]) from None
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return CfdPoints(solver, None if fields is None else Path(fields))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import Problems
 from ehdmaps.extras import lacking
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.job import Job
@@ -101,22 +101,22 @@ def film_outputs(job: Job, fields: str | None, plot: str | None, read: str) -> F
         If the solver has no fields, a file may not be written, or the package that writes fields is missing; `read` is
         the file of the job.
     """
-    problems = [
+    problems = Problems(
         f"{option}: the solver {job.solver!r} has no fields across the film; allowed: with --solver openfoam{also}"
         for option, name, also in (
             ("--fields", fields, ""),
             ("--plot", plot, ", or --frequency FROM TO POINTS beside it"),
         )
         if name is not None and not solvers.SOLVERS[job.solver].keeps_cases
-    ]
+    )
     files = [Output("--plot", plot, FIGURE)]
     if fields is not None:
         problems += lacking("openfoam", "meshio", "--fields")
         contacts = [contact.name for contact in job.contacts]
         files += [Output("--fields", _fields_path(Path(fields), name, len(contacts)), FIELDS) for name in contacts]
-    problems = problems or output_problems(files, [read])
-    if problems:
-        raise InputError(problems)
+    if not problems:
+        problems += output_problems(files, [read])
+    problems.check()
     if fields is None and plot is None:
         return None
     return FilmOutputs(Path(fields) if fields else None, Path(plot) if plot else None)

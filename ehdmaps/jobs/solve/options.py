@@ -1,43 +1,180 @@
-"""Options of `ehdmaps solve` that are quantities within limits, read one after the other, with all problems at once."""
+"""Options of `ehdmaps solve`, read one after the other, with all problems at once."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TypeVar
+import math
+from collections.abc import Callable, Sequence
+from typing import Protocol
 
-from ehdmaps.errors import InputError, short
-from ehdmaps.units import Display, quantity
+import numpy as np
 
-_Missing = TypeVar("_Missing", float, None)
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import InputError, Problems, short
+from ehdmaps.physics.contact import OIL_TEMPERATURES
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, MOST_FREQUENCIES
+from ehdmaps.units import RPM, SPEED, TEMPERATURE, Display, quantity
+
+HERTZ = Display("Hz")
+
+Limits = tuple[float, float]
+"""Lowest and highest value that is allowed."""
 
 
-def option_reader(
-    problems: list[str], missing: _Missing
-) -> Callable[[str, str | None, str, float, float, Display], float | _Missing]:
-    """Reader of options, which notes what is wrong.
+class Turning(Protocol):
+    """A bearing whose rings turn."""
+
+    def entrainment_speed(self, inner_speed: float, outer_speed: float = 0.0) -> float:
+        """Mean speed of the surfaces [m/s] by the speed of the inner ring [rad/s]."""
+        ...
+
+
+def of_unit(text: str, unit: str) -> bool:
+    """Tell whether a quantity was given in a unit of this kind.
+
+    Parameters
+    ----------
+    text : str
+        The quantity.
+    unit : str
+        The unit.
+    """
+    try:
+        quantity(text, unit)
+    except InputError:
+        return False
+    return True
+
+
+class Options:
+    """Reader of options, which notes what is wrong; such an option gives NaN, or None in place of several numbers.
 
     Parameters
     ----------
     problems : list of str
-        Gets a line for each option that is no quantity, or beyond its limits.
-    missing : float or None
-        What such an option gives.
-
-    Returns
-    -------
-    callable
-        (option, text, unit, lowest, highest, display) -> value in the unit, or `missing`; limits in the unit, too.
+        Gets a line for each option that cannot be read, or is beyond its limits.
     """
 
-    def read(option: str, text: str | None, unit: str, low: float, high: float, display: Display) -> float | _Missing:
-        try:
-            value = quantity(text, unit)
-        except InputError as error:
-            problems.append(f"{option}: {error.problems[0]}")
-            return missing
-        if low <= value <= high:
-            return value
-        problems.append(f"{option}: got {short(text)}; allowed: {display.text(low)} to {display.text(high)}")
-        return missing
+    def __init__(self, problems: Problems) -> None:
+        self._problems = problems
 
-    return read
+    def quantity(self, option: str, text: str | None, unit: str, limits: Limits, display: Display) -> float:
+        """A quantity within limits, all in the unit.
+
+        Parameters
+        ----------
+        option, text, unit : str
+            The option, what was given, and the unit.
+        limits : tuple of float
+            Lowest and highest value.
+        display : Display
+            How limits are shown.
+        """
+        value, (low, high) = math.nan, limits
+        with self._problems.after(f"{option}: "):
+            value = quantity(text, unit)
+            if not low <= value <= high:
+                raise InputError(f"got {short(text)}; allowed: {display.text(low)} to {display.text(high)}")
+        return value
+
+    def number(self, option: str, text: str, low: float, high: float) -> float:
+        """A bare number within limits.
+
+        Parameters
+        ----------
+        option, text : str
+            The option, and what was given.
+        low, high : float
+            Lowest and highest value.
+        """
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not low <= value <= high:
+            self._problems.append(f"{option}: got {short(text)}; allowed: a bare number from {low:g} to {high:g}")
+            return math.nan
+        return value
+
+    def speed(self, text: str, bearing: Turning | None, speeds: Limits, rings: Limits) -> float:
+        """Entrainment speed [m/s] by --speed, which may be that of the inner ring of a bearing.
+
+        Parameters
+        ----------
+        text : str
+            What was given.
+        bearing : Turning, optional
+            The bearing, where there is one that can be read.
+        speeds, rings : tuple of float
+            Lowest and highest entrainment speed [m/s], and speed of the inner ring [rad/s].
+        """
+        if not of_unit(text, "rad/s"):
+            return self.quantity("--speed", text, "m/s", speeds, SPEED)
+        ring = self.quantity("--speed", text, "rad/s", rings, RPM)
+        return math.nan if bearing is None else bearing.entrainment_speed(ring)
+
+    def temperature(self, text: str, oil: Lubricant | None) -> float:
+        """Temperature [K] by --temperature, at which the oil has a state.
+
+        Parameters
+        ----------
+        text : str
+            What was given.
+        oil : Lubricant, optional
+            The oil, where there is one that can be read.
+        """
+        value = self.quantity("--temperature", text, "K", OIL_TEMPERATURES, TEMPERATURE)
+        if oil is not None and math.isfinite(value):
+            with self._problems.after("--temperature: "):
+                oil.at(value)
+        return value
+
+    def spaced(self, option: str, given: Sequence[str], read: Callable[[str], float], most: int) -> FloatArray | None:
+        """Numbers from the first to the second, even in the logarithm, by FROM TO POINTS.
+
+        Parameters
+        ----------
+        option : str
+            The option.
+        given : sequence of str
+            Texts of FROM, TO and POINTS.
+        read : callable
+            Reads an end, and notes what is wrong about it.
+        most : int
+            Largest number of points.
+        """
+        first, last, count = given
+        low, high, before = read(first), read(last), len(self._problems)
+        if low >= high:
+            self._problems.append(f"{option}: got {first:.40} to {last:.40}; allowed: TO above FROM")
+        points = int(count) if count.isascii() and count.isdigit() and len(count) <= 9 else -1
+        if not 2 <= points <= most:
+            self._problems.append(f"{option}, POINTS: got {short(count)}; allowed: a whole number from 2 to {most}")
+        if len(self._problems) > before or not (math.isfinite(low) and math.isfinite(high)):
+            return None
+        return np.geomspace(low, high, points)
+
+    def frequency(self, text: str) -> float:
+        """One frequency of --frequency [Hz].
+
+        Parameters
+        ----------
+        text : str
+            What was given.
+        """
+        return self.quantity("--frequency", text, "Hz", (LOWEST_FREQUENCY, HIGHEST_FREQUENCY), HERTZ)
+
+    def frequencies(self, given: Sequence[str]) -> FloatArray | None:
+        """Frequencies of --frequency [Hz], one or FROM TO POINTS.
+
+        Parameters
+        ----------
+        given : sequence of str
+            Values of the option.
+        """
+        if len(given) == 1:
+            return np.array([self.frequency(given[0])])
+        if len(given) == 3:
+            return self.spaced("--frequency", given, self.frequency, MOST_FREQUENCIES)
+        self._problems.append(f"--frequency: got {len(given)} values; allowed: one, or FROM TO POINTS")
+        return None

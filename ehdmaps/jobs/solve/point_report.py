@@ -13,6 +13,7 @@ from ehdmaps.ehl.solver import SuppliedFilm
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.report import ERRORS, FOUND_BY_SOME, NONE_STATED
 from ehdmaps.jobs.make.tasks import ERRORS_OF_SOME
+from ehdmaps.jobs.solve.contact_table import without_nan
 from ehdmaps.jobs.solvers import solver_words
 from ehdmaps.maps.rough_layer import (
     DEEPEST_MEANT,
@@ -110,9 +111,7 @@ def point_record(
         "film_note": too_thin(solution.minimum_film, surface.roughness),
         "reason": solution.reason,
     }
-    return {
-        key: None if isinstance(value, float) and not math.isfinite(value) else value for key, value in record.items()
-    }
+    return without_nan(record)
 
 
 def point_place(contact: LineContact, oil: Lubricant, point: OperatingPoint) -> dict[str, float | None]:
@@ -351,8 +350,7 @@ def supplied_record(supply: OilSupply, film: SuppliedFilm) -> dict[str, Any]:
         "meniscus": film.meniscus,
         "supplied_compliance": film.supplied_compliance,
     }
-    plain = {key: value if math.isfinite(value) else None for key, value in values.items()}
-    return {"supply": supply.label, **plain}
+    return {"supply": supply.label, **without_nan(values)}
 
 
 def supplied_table(supply: OilSupply, films: dict[str, SuppliedFilm]) -> str:

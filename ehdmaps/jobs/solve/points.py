@@ -10,7 +10,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.jobs.make.assemble import only_usable, package_versions, with_structure
 from ehdmaps.jobs.make.store import NoStore
 from ehdmaps.jobs.make.sweep import sweep
@@ -106,17 +106,15 @@ def _check(
 ) -> None:
     """Refuse points outside of what solvers take, and temperatures at which the oil has no data."""
     names = [contact.name for contact in contacts]
-    problems: list[str] = []
+    problems = Problems()
     if not names or len(set(names)) < len(names):
         problems.append(f"contacts: got {', '.join(names) or 'none'}; allowed: at least one, with names apart")
     if not values[0].size:
         problems.append("points: got none; allowed: at least one")
     for load, speed, temperature in zip(*(value.ravel().tolist() for value in values), strict=True):
-        try:
+        with problems.after("points, "):
             OperatingPoint(load, speed, temperature)
             lubricant.at(temperature)
-        except InputError as error:
-            problems += [f"points, {problem}" for problem in error.problems]
     if problems:
         raise InputError(list(dict.fromkeys(problems))[:_MOST_NAMED])
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import math
 from dataclasses import dataclass
 from functools import partial
@@ -12,18 +11,25 @@ from typing import Any
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.problem import SPEED_AXIS
 from ehdmaps.jobs.profiles import RollerProfile, profile_from_text
 from ehdmaps.jobs.reader import read_job
-from ehdmaps.jobs.solve.ball_points import FORCE, shown_with_error, with_errors
-from ehdmaps.jobs.solve.options import option_reader
+from ehdmaps.jobs.solve.ball_points import FORCE
+from ehdmaps.jobs.solve.contact_table import (
+    Row,
+    number_rows,
+    records_json,
+    rows_text,
+    shown_with_error,
+    with_errors,
+)
+from ehdmaps.jobs.solve.options import Options
 from ehdmaps.physics.bearing import BearingGeometry
-from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.physics.surface import iso_profile
 from ehdmaps.point.finite_roller import FiniteRoller, RollerSolution, solve_roller
-from ehdmaps.units import DAMPER, FILM, LENGTH, PRESSURE, RPM, SPEED, SPRING, TEMPERATURE
+from ehdmaps.units import DAMPER, FILM, LENGTH, PRESSURE, SPEED, SPRING, TEMPERATURE
 
 NAME = "roller"
 """Word of --solver; behind a colon a profile, as `mbs bearing --profile` has it."""
@@ -89,7 +95,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         )
         for contact in request.job.contacts
     }
-    text = _json(solutions) if arguments.json else _table(request, solutions)
+    text = records_json(_record(*one) for one in solutions.items()) if arguments.json else _table(request, solutions)
     return text, 0 if all(solution.status.usable for solution in solutions.values()) else 1
 
 
@@ -102,15 +108,13 @@ def _named(name: str, bearing: BearingGeometry, places: FloatArray) -> FloatArra
 
 def _read(arguments: argparse.Namespace) -> _Request:
     """Read the arguments; all problems at once."""
-    problems: list[str] = []
+    problems = Problems()
     for name in (*_REFUSED, *_REFUSED_TOO):
         if getattr(arguments, name, None) is not None:
             problems.append(f"--{name.replace('_', '-')}: not with --solver {NAME}; leave it out")
     job: Job | None = None
-    try:
+    with problems:
         job = read_job(arguments.job)
-    except InputError as error:
-        problems.extend(error.problems)
     bearing = None if job is None else job.bearing
     if job is not None and bearing is None:
         problems.append(f"--solver {NAME}: got a job of a bare [contact]; allowed: one with [bearing], or --bearing")
@@ -122,72 +126,55 @@ def _read(arguments: argparse.Namespace) -> _Request:
         if np.max(np.abs(profile(places) - profile(-places))) > _ROUND_OFF * bearing.roller_diameter:
             problems.append(f"--solver {NAME}: got a profile that differs on both sides; allowed: alike on both")
 
-    read = option_reader(problems, math.nan)
-
-    load = read("--load", arguments.load, "N", 1e-3, 1e9, FORCE)
-    if any(unit in arguments.speed for unit in ("rpm", "rad")):
-        ring = read("--speed", arguments.speed, "rad/s", 1e-3, 1e6, RPM)
-        speed = bearing.entrainment_speed(ring) if bearing is not None else math.nan
-    else:
-        speed = read("--speed", arguments.speed, "m/s", SPEED_AXIS.low, SPEED_AXIS.high, SPEED)
-    temperature = read("--temperature", arguments.temperature, "K", *OIL_TEMPERATURES, TEMPERATURE)
-    if job is not None and math.isfinite(temperature):
-        try:
-            job.lubricant.at(temperature)
-        except InputError as error:
-            problems.extend(f"--temperature: {problem}" for problem in error.problems)
+    read = Options(problems)
+    load = read.quantity("--load", arguments.load, "N", (1e-3, 1e9), FORCE)
+    speed = read.speed(arguments.speed, bearing, (SPEED_AXIS.low, SPEED_AXIS.high), (1e-3, 1e6))
+    temperature = read.temperature(arguments.temperature, None if job is None else job.lubricant)
     if problems or job is None or bearing is None:
         raise InputError(problems)
     return _Request(job, bearing, profile, load, speed, temperature)
 
 
-def _json(solutions: dict[str, RollerSolution]) -> str:
-    """One object a contact, SI; None where there is no number."""
-    records = []
-    for name, found in solutions.items():
-        values: dict[str, Any] = {
-            "contact": name,
-            "load": found.load,
-            "entrainment_speed": found.entrainment_speed,
-            "temperature": found.temperature,
-            "M": found.load_number,
-            "L": found.oil_number,
-            **with_errors(found, [attribute for _, attribute, _ in NUMBERS]),
-            "minimum_place": found.minimum_place,
-            "dry_stiffness": found.dry_stiffness,
-            "film_compliance": found.film_compliance,
-            "film_compliance_error": found.film_compliance.error,
-            "steps": found.steps,
-            "solve_seconds": found.solve_seconds,
-            "status": found.status.word,
-            "reason": found.reason,
-        }
-        none = [key for key, value in values.items() if isinstance(value, float) and math.isnan(value)]
-        records.append(values | dict.fromkeys(none))
-    return json.dumps(records, indent=2, allow_nan=False)
+def _record(name: str, found: RollerSolution) -> dict[str, Any]:
+    """Plain values of a contact, SI."""
+    return {
+        "contact": name,
+        "load": found.load,
+        "entrainment_speed": found.entrainment_speed,
+        "temperature": found.temperature,
+        "M": found.load_number,
+        "L": found.oil_number,
+        **with_errors(found, [attribute for _, attribute, _ in NUMBERS]),
+        "minimum_place": found.minimum_place,
+        "dry_stiffness": found.dry_stiffness,
+        "film_compliance": found.film_compliance,
+        "film_compliance_error": found.film_compliance.error,
+        "steps": found.steps,
+        "solve_seconds": found.solve_seconds,
+        "status": found.status.word,
+        "reason": found.reason,
+    }
 
 
 def _table(request: _Request, solutions: dict[str, RollerSolution]) -> str:
     """The printed table: a column a contact, each number with its error."""
     found, bearing = list(solutions.values()), request.bearing
-    rows: list[tuple[str, str, list[str]]] = [("status", "", [each.status.word for each in found])]
-    for label, name, display in NUMBERS:
-        shown = [shown_with_error(getattr(each, name), getattr(each, name).error, display) for each in found]
-        rows.append((label, display.unit, shown))
-        if name == "minimum_film":
-            places = [shown_with_error(each.minimum_place, math.nan, LENGTH) for each in found]
-            rows.append(("off the middle by", LENGTH.unit, places))
-    rows.append(("dry k", SPRING.unit, [shown_with_error(each.dry_stiffness, math.nan, SPRING) for each in found]))
-    rows.append(("processor time to solve", "s", [f"{each.solve_seconds:.3g}" for each in found]))
+    numbers = number_rows(found, NUMBERS)
+    off_middle = [name for _, name, _ in NUMBERS].index("minimum_film") + 1
+    rows: list[Row] = [
+        ("status", "", [each.status.word for each in found]),
+        *numbers[:off_middle],
+        ("off the middle by", LENGTH.unit, [shown_with_error(each.minimum_place, math.nan, LENGTH) for each in found]),
+        *numbers[off_middle:],
+        ("dry k", SPRING.unit, [shown_with_error(each.dry_stiffness, math.nan, SPRING) for each in found]),
+        ("processor time to solve", "s", [f"{each.solve_seconds:.3g}" for each in found]),
+    ]
     place = f"{FORCE.text(request.load)} a roller, {SPEED.text(request.speed)}, {TEMPERATURE.text(request.temperature)}"
-    lines = [
+    head = [
         f"{request.job.title}, {request.job.lubricant.title}: {place}",
         f"rollers of {LENGTH.value(bearing.roller_diameter):.4g} x {LENGTH.text(bearing.roller_length)}, profile "
         f"{request.profile}, half-spaces",
+        bearing.estimated,
     ]
-    if bearing.estimated:
-        lines.append(bearing.estimated)
-    lines += [f"  {'':18s}{'':8s}" + "".join(f"{name:>24s}" for name in solutions)]
-    lines += [f"  {label:18s}{unit:8s}" + "".join(f"{value:>24s}" for value in shown) for label, unit, shown in rows]
-    lines += [f"{name}: {each.reason}" for name, each in solutions.items() if each.reason]
-    return "\n".join(line.rstrip() for line in lines)
+    reasons = [f"{name}: {each.reason}" for name, each in solutions.items() if each.reason]
+    return rows_text(head, solutions, rows, reasons)

@@ -18,7 +18,7 @@ from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solution import ContactSolver, Status
 from ehdmaps.physics.spectrum import ContactSpectrum, checked_frequencies, contact_spectrum
-from ehdmaps.units import COMPLIANCE, DAMPER, DAMPING, LENGTH, LOAD, SPEED, SPRING, STIFFNESS, TEMPERATURE
+from ehdmaps.units import COMPLIANCE, DAMPER, DAMPING, LENGTH, SPRING, STIFFNESS, point_text
 
 _VARIABLES: dict[str, tuple[str, str]] = {
     "film_compliance": ("m2 N-1", "complex film compliance S; 1/K = compliance of the solids + S"),
@@ -181,8 +181,7 @@ def spectrum_place(dataset: xr.Dataset) -> str:
     dataset : xarray.Dataset
         See `ehdmaps.jobs.solve.spectrum.spectrum_dataset`.
     """
-    load, speed, temperature = (dataset.attrs[name] for name in ("load", "entrainment_speed", "temperature"))
-    return f"{LOAD.text(load)}, {SPEED.text(speed)}, {TEMPERATURE.text(temperature)}"
+    return point_text(*(dataset.attrs[name] for name in ("load", "entrainment_speed", "temperature")))
 
 
 def _block(chosen: xr.Dataset, contact: str, length: float | None) -> list[str]:

@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from ehdmaps.arrays import BoolArray, FloatArray, IndexArray
 from ehdmaps.maps.kernels.ends import ends_at, one_end
-from ehdmaps.units import LOAD, SPEED, TEMPERATURE, Display
+from ehdmaps.units import LOAD, SPEED, TEMPERATURE, span
 
 Axes = tuple[FloatArray, FloatArray, FloatArray]
 """Loads [N/m], entrainment speeds [m/s] and temperatures [K] of a map."""
@@ -139,7 +139,7 @@ class Reach:
         """Parts of `text`: the ranges, places of the map where loads end early or begin late, and what is left out."""
         speeds = self.speeds if self.rows.size else np.zeros(1)
         axes = (np.array(self.load_range), LOAD), (speeds, SPEED), (self.temperatures, TEMPERATURE)
-        parts = [", ".join(_span(values, display) for values, display in axes)]
+        parts = [", ".join(span(values, display) for values, display in axes)]
         parts += self._early(self.last, self.load_range[1], "up to")
         parts += self._early(self.first, self.load_range[0], "from")
         moving = np.flatnonzero(self.axes[1] > 0.0)
@@ -158,7 +158,7 @@ class Reach:
         loads = np.unique(ends[ends != usual])
         for load in sorted(loads.tolist(), key=lambda one: -abs(float(np.log(one / usual)))):
             places = [
-                f"{_span(self.speeds[rows], SPEED)} and {TEMPERATURE.text(float(kelvin))}"
+                f"{span(self.speeds[rows], SPEED)} and {TEMPERATURE.text(float(kelvin))}"
                 for k, kelvin in enumerate(self.temperatures)
                 for rows in _neighbours(np.flatnonzero(ends[:, k] == load))
                 if rows.size
@@ -260,12 +260,6 @@ def _kept(enough: BoolArray) -> tuple[IndexArray, IndexArray]:
         else:
             columns = np.delete(columns, int(np.argmax(of_column)))
     return rows, columns
-
-
-def _span(values: FloatArray, display: Display) -> str:
-    """Range of some values in words."""
-    low, high = display.value(float(np.min(values))), display.value(float(np.max(values)))
-    return f"{low:.4g} {display.unit}" if low == high else f"{low:.4g} to {high:.4g} {display.unit}"
 
 
 def _neighbours(places: IndexArray) -> Iterator[IndexArray]:

@@ -29,7 +29,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import FloatArray, Values, as_given
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 
 ELLIPTICITIES = (1e-3, 1e3)
 """Smallest and largest ellipticity: beyond them the half-space bodies would have to be thousands of widths large."""
@@ -190,15 +190,14 @@ class Ellipse:
     body_radius: float = math.inf
 
     def __post_init__(self) -> None:
-        problems = []
+        problems = Problems()
         if not self.body_radius > 0.0:
             problems.append(f"ellipse, body_radius: got {self.body_radius!r} m; allowed: > 0")
         for name, unit in (("rolling_radius", "m"), ("transverse_radius", "m"), ("reduced_modulus", "Pa")):
             value = getattr(self, name)
             if not (isinstance(value, int | float) and math.isfinite(value) and value > 0.0):
                 problems.append(f"ellipse, {name}: got {value!r} {unit}; allowed: finite and > 0")
-        if problems:
-            raise InputError(problems)
+        problems.check()
         _ = self.ellipticity
 
     @cached_property

@@ -16,7 +16,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError, MapError
+from ehdmaps.errors import InputError, MapError, Problems
 from ehdmaps.jobs.make.points.asked import ENDING, MADE
 from ehdmaps.netcdf_structure import DAMAGE, structure_problem
 from ehdmaps.outputs import MADE_AS, dataset_kind, written_aside
@@ -25,7 +25,7 @@ from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.solids import STEEL
-from ehdmaps.physics.solution import Status
+from ehdmaps.physics.solution import Status, usable_points
 from ehdmaps.table.file import CHECKSUM
 from ehdmaps.table.points.file import shipped_point_table
 from ehdmaps.table.points.films import CAUSES, NUMBERS
@@ -96,18 +96,15 @@ class PointsRequest:
             With every problem.
         """
         name, comma, beside = bearing.partition(",")
-        problems: list[str] = []
+        problems = Problems()
         if comma and oil is not None:
             problems.append(f"--oil: got {oil!r:.60} beside {beside.strip()!r:.60}; allowed: one of the two")
         found: list[Any] = []
         oil_name = beside.strip() if comma else DEFAULT_OIL if oil is None else oil
         for option, read, text in (("--bearing", ball_estimate, name), ("--oil", Lubricant.named, oil_name)):
-            try:
+            with problems.after(f"{option}: "):
                 found.append(read(text))
-            except InputError as error:
-                problems += [f"{option}: {problem}" for problem in error.problems]
-        if problems:
-            raise InputError(problems)
+        problems.check()
         return cls(*found)
 
     @property
@@ -199,7 +196,7 @@ def usable(dataset: xr.Dataset) -> xr.DataArray:
     dataset : xarray.Dataset
         A map of points.
     """
-    return dataset["status"].isin([int(each) for each in Status if each.usable])
+    return dataset["status"].copy(data=usable_points(dataset["status"].values))
 
 
 def reasons(dataset: xr.Dataset) -> npt.NDArray[np.str_]:
