@@ -192,7 +192,8 @@ def passing(flow: FloatArray | float, layer: float | FloatArray) -> FloatArray:
     >>> [round(float(r), 4) for r in passing(np.array([1e-7, 1e-6, 1e-5]), 1e-6)]
     [1.0, 0.917, 0.1]
     """
-    passed: FloatArray = (1.0 + (np.asarray(flow, dtype=np.float64) / layer) ** CORNER) ** (-1.0 / CORNER)
+    with np.errstate(over="ignore"):  # of a contact that hardly carries, of which nothing passes
+        passed: FloatArray = (1.0 + (np.asarray(flow, dtype=np.float64) / layer) ** CORNER) ** (-1.0 / CORNER)
     return passed
 
 

@@ -329,12 +329,15 @@ class RollingLoss:
         Part of the power of rollers that carry less than `IDLE` of the highest roller load; NaN without power.
     slowest : float
         Speed of the slowest roller over that of rolling.
+    sliding : float
+        Power of balls that drill, and of roller ends at ribs, at a traction of `TRACTION` of their loads [W].
     """
 
     power: FloatArray
     ring_speed: float
     idle: float
     slowest: float = 1.0
+    sliding: float = 0.0
 
     @property
     def total(self) -> float:
@@ -345,6 +348,11 @@ class RollingLoss:
     def torque(self) -> float:
         """Rolling torque between the rings [N m]; zero at standstill."""
         return self.total / self.ring_speed if self.ring_speed > 0.0 else 0.0 * self.total
+
+    @property
+    def sliding_torque(self) -> float:
+        """Torque between the rings by what slides [N m]; zero at standstill."""
+        return self.sliding / self.ring_speed if self.ring_speed > 0.0 else 0.0
 
 
 def rolling_loss(
@@ -387,7 +395,14 @@ def rolling_loss(
     return loss_of(power, rollers.load, ring_speed, slowest)
 
 
-def loss_of(power: FloatArray, load: FloatArray, ring_speed: float, slowest: float = 1.0) -> RollingLoss:
+TRACTION = 0.05
+"""Traction of what slides in a full film of mineral oil, over its load [-]: that of SKF's catalogue. Fast, warm or thin
+films have less, rubbing surfaces two to three times as much."""
+
+
+def loss_of(
+    power: FloatArray, load: FloatArray, ring_speed: float, slowest: float = 1.0, sliding: float = 0.0
+) -> RollingLoss:
     """Loss of a bearing by what its rolling elements take.
 
     Parameters
@@ -400,10 +415,12 @@ def loss_of(power: FloatArray, load: FloatArray, ring_speed: float, slowest: flo
         Speed of one ring against the other [rad/s], of either sign.
     slowest : float
         Speed of the slowest element over that of rolling.
+    sliding : float
+        Power of what slides [W].
     """
     total = float(power.sum())
     idle = float(power[:, load < IDLE * np.max(load)].sum()) / total if total > 0.0 else math.nan
-    return RollingLoss(power, abs(ring_speed), idle, slowest)
+    return RollingLoss(power, abs(ring_speed), idle, slowest, sliding)
 
 
 @dataclass(frozen=True, eq=False)

@@ -345,6 +345,8 @@ def statics_dataset(
             values = np.array([getattr(state, name) for state in contacts])
             variables[name] = variable(("bearing", "contact"), values, unit, words)
     if losses:
+        from mbs.bearings.contact_report import TRACTION  # there where losses are
+
         known = "films only; none of laws without rolling forces"
         variables["rolling_torque"] = variable(
             "bearing", np.array([loss.torque for loss in losses]), "N m", f"torque that rolling takes; {known}"
@@ -354,6 +356,12 @@ def statics_dataset(
             np.array([loss.total for loss in losses]),
             "W",
             f"power that the films of all rollers or balls take; {known}",
+        )
+        variables["sliding_torque"] = variable(
+            "bearing",
+            np.array([loss.sliding_torque for loss in losses]),
+            "N m",
+            f"torque that drilling of balls and ends of rollers at ribs take, at a traction of {TRACTION:g}",
         )
     attributes = {**_operation(balance), "warnings": "\n".join(warnings)}
     return xr.Dataset(variables, coords={**_coordinates(balance.system), **coordinates}, attrs=attributes)

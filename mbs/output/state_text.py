@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ehdmaps.physics.designations.clearance import STATED, clearance_range
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.units import TEMPERATURE
-from mbs.bearings.contact_report import RollingLoss
+from mbs.bearings.contact_report import TRACTION, RollingLoss
 from mbs.bearings.thermal import BearingHeat, BearingState
 from mbs.scene.fields import FORCE, MICROMETRE
 
@@ -124,7 +124,8 @@ def loss_words(loss: RollingLoss, elements: str = "rollers") -> str:
         return words
     words = f"{words}, {loss.idle:.0%} of it in idle {elements}"
     if elements != "rollers":
-        return f"{words} (films only: no slip and drilling, ribs, cage, seals, churning)"
+        more = f"{1e3 * loss.sliding_torque:.3g} N mm more by drilling and ribs at a traction of {TRACTION:g}"
+        return f"{words} (films only: no cage, seals, churning); {more}"
     if loss.slowest == 1.0:
         return f"{words} (films only: no flanges, cage, seals, churning)"
     return f"{words}, the slowest at {loss.slowest:.2g} of rolling (films and pockets: no flanges, seals, churning)"

@@ -2,7 +2,8 @@
 
 Pressures are those of dry Hertz. Central and smallest films are those of the law in force. The rolling force of an
 ellipse is that of strips along the motion, each a line contact under the load that Hertz gives it: side flow is left
-out. So are drilling and slip within the ellipse, which often take more than the films.
+out. Drilling, which often takes more than the films, is that of one traction all over the ellipse; so is no slip along
+the motion within it, by the curved contact, nor that across by the gyroscopic moment, which is held without slip.
 """
 
 from __future__ import annotations
@@ -16,7 +17,8 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.point.ellipse import Ellipse
 from mbs.bearings.balls.ball_bearing import BallForce, BallLoads
-from mbs.bearings.contact_report import BearingContacts, RollingLoss, loss_of
+from mbs.bearings.balls.ball_motion import ball_motion
+from mbs.bearings.contact_report import TRACTION, BearingContacts, RollingLoss, loss_of
 from mbs.bearings.films import ContactState
 
 STRIPS = 12
@@ -72,6 +74,23 @@ def strips(ellipse: Ellipse, load: FloatArray, line_force: Callable[[FloatArray]
     return np.asarray((half * line_force(0.75 * load[:, None] / half * (1.0 - places**2))) @ weights)
 
 
+def drilling_power(ellipse: Ellipse, load: FloatArray, spin: FloatArray) -> FloatArray:
+    """Power of contacts that drill at a traction of `TRACTION` everywhere, in the shape of the loads [W].
+
+    The moment over a Hertz ellipse is 3/8 mu Q b E(m), with the longer semi-axis b and the elliptic integral E.
+
+    Parameters
+    ----------
+    ellipse : Ellipse
+        The contact, kappa >= 1.
+    load, spin : array
+        Loads [N], and angular velocities about the normal [rad/s], of either sign.
+    """
+    longer = np.asarray(ellipse.semi_axes(load)[1])
+    moment = 0.375 * TRACTION * load * longer * float(ellipse.numbers.second_integral)
+    return np.asarray(moment * np.abs(spin))
+
+
 def ball_contacts(
     force: BallForce, balls: BallLoads, films: PointFilmSource | None, speeds: tuple[float, float]
 ) -> tuple[BearingContacts, RollingLoss]:
@@ -100,4 +119,8 @@ def ball_contacts(
             rolling[loaded] = strips(ellipse, load[loaded], partial(films.line_force, side, entrainment_speed=u))
         sides.append(ContactState(pressure, pressure, central, smallest, rolling, np.zeros(load.shape)))
     power = np.stack([side.rolling_force[:, 0] for side in sides]) * u
-    return BearingContacts(*sides), loss_of(power, balls.load[0], speeds[0] - speeds[1])
+    spins = zip(
+        force.geometry.contacts(force.material), balls.load, ball_motion(force, balls, *speeds).spin, strict=True
+    )
+    sliding = float(sum(drilling_power(*each).sum() for each in spins))
+    return BearingContacts(*sides), loss_of(power, balls.load[0], speeds[0] - speeds[1], sliding=sliding)

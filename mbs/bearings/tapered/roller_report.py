@@ -1,7 +1,8 @@
 """Pressures and films of tapered rollers, and of rollers between ribs, at rest, and the cost of rolling.
 
 Hertz pressures are those at the radius of each slice. Films and rolling forces are those at the radius and speed of the
-middle of a roller, as in the balance, see `mbs.bearings.tapered.line_film`; ribs are left out.
+middle of a roller, as in the balance, see `mbs.bearings.tapered.line_film`. Ends of rollers slide on ribs in the
+direction of rolling, at one traction.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import dataclasses
 
 import numpy as np
 
-from mbs.bearings.contact_report import BearingContacts, RollingLoss, loss_of
+from mbs.bearings.contact_report import TRACTION, BearingContacts, RollingLoss, loss_of
 from mbs.bearings.films import FilmSource
 from mbs.bearings.tapered.tapered_bearing import TaperedForce, TaperedLoads
 
@@ -41,4 +42,8 @@ def roller_contacts(
         sides.append(dataclasses.replace(state, hertz_pressure=pressure, max_pressure=higher * state.max_pressure))
     rolling = np.stack([side.rolling_force.sum(axis=1) for side in sides])
     power = rolling * geometry.roller_length / force.positions.size * u
-    return BearingContacts(*sides), loss_of(power, rollers.load[0], speeds[0] - speeds[1])
+    sliding = 0.0
+    for rib, load in zip(force.ribs, rollers.ribs, strict=True):
+        ring, end = geometry.rib_speeds(*speeds, outer=rib.outer, radius=rib.radius)
+        sliding += TRACTION * float(load.sum()) * abs(ring - end)
+    return BearingContacts(*sides), loss_of(power, rollers.load[0], speeds[0] - speeds[1], sliding=sliding)

@@ -42,8 +42,8 @@ def scene_of(spec: BearingSpec | LocatingSpec, oil: Lubricant, told: Description
     told : Description
         Temperature of its raceways, oil supply, and how well its numbers are known.
     """
-    at = {"temperature": told.temperature, "lubricant": oil, "supply": told.supply}
-    scene = Scene(name=NAME, speed=0.0, bodies=(), elements=(spec,), **at)
+    scene = Scene(name=NAME, speed=0.0, temperature=told.temperature, lubricant=oil, bodies=(), elements=(spec,))
+    scene = dataclasses.replace(scene, supply=told.supply)
     # values are in force already
     return known(scene, tuple(dataclasses.replace(one, value=None) for one in told.known))
 
