@@ -69,12 +69,25 @@ def main(argv: Sequence[str] | None = None) -> int:
     return run(parser(), _command, argv)
 
 
+def _has_balls(text: str) -> bool:
+    """Tell whether keys in braces, or a file, are those of a ball bearing."""
+    if not (text.lstrip().startswith("{") or text.lower().endswith(".toml")):
+        return False
+    from ehdmaps.jobs.balls import balls_of
+
+    try:
+        return balls_of(text) is not None
+    except InputError:
+        return True  # its reader says what is wrong
+
+
 def _command(arguments: argparse.Namespace) -> tuple[str, int]:
     """Load the command that is asked for, and do it."""
     if arguments.command == "solve":
         from ehdmaps.physics.designations.reader import BALLS, plain_name
 
-        if any(plain_name(text or "", BALLS) for text in (arguments.job, arguments.bearing)):
+        asked = [text for text in (arguments.job, arguments.bearing) if text]
+        if any(plain_name(text, BALLS) or _has_balls(text) for text in asked):
             from ehdmaps.jobs.solve.ball_points import run as solve_balls
 
             return solve_balls(arguments)

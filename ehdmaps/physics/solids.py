@@ -61,6 +61,10 @@ class Material:
 STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.3, density=7850.0)
 
 
+SILICON_NITRIDE = Material(310e9, 0.26, 3200.0, conductivity=30.0, heat_capacity=800.0)
+"""Silicon nitride of balls: usual values."""
+
+
 def reduced_modulus(first: Material, second: Material) -> float:
     """Reduced modulus of a pair, E' = 2 / ((1 - nu1^2)/E1 + (1 - nu2^2)/E2) [Pa].
 

@@ -120,11 +120,19 @@ def family_of(name: str, axial: str | None) -> Family:
     Parameters
     ----------
     name : str
-        Designation, or a file.
+        Designation, a file, or keys in braces.
     axial : str or None
         Axial load as it was typed, which ribs carry.
     """
-    if not os.path.isfile(name):
+    by_keys = "\0" not in name and (name.lstrip().startswith("{") or os.path.isfile(name))
+    if by_keys:
+        from ehdmaps.jobs.balls import balls_of
+
+        if balls_of(name) is not None:
+            from mbs.commands.one_bearing.balls import BALL_BEARINGS
+
+            return BALL_BEARINGS
+    if not by_keys:
         if _BALLS.match(name):
             from mbs.commands.one_bearing.balls import BALL_BEARINGS
 

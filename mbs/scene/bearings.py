@@ -138,7 +138,7 @@ def read_bearing(section: Table, name: str) -> BearingSpec | LocatingSpec | Matr
     """
     if section.choice("kind", ("rollers", "table")) == "table":
         return read_table_bearing(section, name)
-    if "bearing" in section:  # catalogues of others are loaded where a designation is given
+    if "bearing" in section or "geometry" in section:  # catalogues of others are loaded where they may be meant
         from mbs.scene.locating.reading import reader_of
 
         if (read := reader_of(section)) is not None:

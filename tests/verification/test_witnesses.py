@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from argparse import Namespace
+
 import numpy as np
 import pytest
 
-from tests.cases.witnesses import centre_line, gmn_pairs, iso_16281, measured_films
+from mbs.commands.bearing import family_of
+from mbs.commands.one_bearing.request import bands_of, points_of, read_request
+from mbs.scene.choices import OPTIONS
+from tests.cases.witnesses import centre_line, gmn_pairs, iso_16281, measured_films, rows
 
 
 def test_pairs_are_as_stiff_as_their_maker_says() -> None:
@@ -16,6 +21,25 @@ def test_pairs_are_as_stiff_as_their_maker_says() -> None:
     assert 0.97 <= np.median(default.ratio) <= 1.05
     assert np.max(np.abs(default.ratio - 1.0)) < 0.12
     assert np.mean((loose.ratio <= 1.03) & (default.ratio >= 0.97)) >= 0.95
+
+
+@pytest.mark.slow
+def test_the_printed_band_holds_what_their_maker_says() -> None:
+    """Axial K with its 90 % band, as `mbs bearing` prints it: 95 % of the points are inside."""
+    held = []
+    for row in rows("gmn_pair_rigidity"):
+        axial, choices = f"{row['preload_N']} N", {choice.key: None for choice in OPTIONS} | {"law": ["hertz"]}
+        asked = {
+            **dict.fromkeys(("outer_speed", "direction", "ring_temperatures", "oil", "permittivity", "output", "plot")),
+            **{"tilts": False, "profile": "iso", "slices": "41", "coupled": False, **choices},
+        }
+        bearing = Namespace(bearing=row["designation"], load=[["0 N"]], speed=[["0 rpm"]], axial=axial, **asked)
+        request = read_request(bearing, family_of(row["designation"], axial))
+        band = bands_of(request, points_of(request))["stiffness_axial"]
+        theirs = 0.5e6 * float(row["pair_axial_rigidity_N_per_um"])
+        held.append(bool(band.low <= theirs <= band.high))
+    assert len(held) == 59
+    assert np.mean(held) >= 0.95
 
 
 @pytest.mark.parametrize("series", measured_films(), ids=lambda one: one.name)

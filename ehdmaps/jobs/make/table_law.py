@@ -12,6 +12,7 @@ import numpy.typing as npt
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs import solvers
+from ehdmaps.jobs.balls import balls_of
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.table_films import table_films, unserved
 from ehdmaps.jobs.make.tasks import of_groups
@@ -23,11 +24,9 @@ from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.catalogue import designated
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.designations.reader import BALLS, plain_name
 from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, heat_data
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, FilmConditions, OilSupply
-from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.solution import ContactSolver
@@ -284,7 +283,7 @@ def law(
     >>> nu308 = ehdmaps.law(ehdmaps.BearingGeometry.named("NU308"), ehdmaps.Lubricant.named("FVA3"))  # doctest: +SKIP
     """
     if isinstance(of, str):
-        of = ball_estimate(of) if plain_name(of, BALLS) else designated(of)
+        of = balls_of(of) or designated(of)
     lubricant = Lubricant.named(lubricant) if isinstance(lubricant, str) else lubricant
     if isinstance(of, BallGeometry):
         if solver is not None:

@@ -13,6 +13,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiling import stopwatch
 from ehdmaps.errors import InputError, Problems
+from ehdmaps.jobs.balls import balls_of
 from ehdmaps.jobs.solve.contact_table import (
     Row,
     number_rows,
@@ -207,7 +208,8 @@ def _read(arguments: argparse.Namespace) -> _Request:
     bearing: BallGeometry | None = None
     oil: Lubricant | None = None
     with problems:
-        bearing = ball_estimate(arguments.job or arguments.bearing)
+        asked = arguments.job or arguments.bearing
+        bearing = balls_of(asked) or ball_estimate(asked)
     with problems.after("--oil: "):
         oil = Lubricant.named(arguments.oil or DEFAULT_OIL)
     load = read.quantity("--load", arguments.load, "N", (0.0, 1e9), FORCE)

@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
 
 _PERCENT = re.compile(r"(roller diameter|roller length|ball diameter|pitch diameter) (?:to )?(\d+) %")
 _RACEWAYS = re.compile(r"raceways to about (\d+) %")
 _ANGLE = re.compile(r"contact angle to ([\d.]+) deg")
-_GROOVES = re.compile(r"groove radii ([\d.]+) to ([\d.]+)")
+_GROOVES = re.compile(r"(inner |outer |)groove radi(?:i|us) ([\d.]+) to ([\d.]+)")
+_GROOVE_WORDS = re.compile(r"groove radii ([\d.]+ to [\d.]+ of it)(?: \([^)]*\))?")
 _COUNT = re.compile(r"number of (rollers|balls) \+-(\d+)")
 _EVEN = ("roller diameter",)
 """Parts whose effect on stiffness and damping is even, to 2 %: one end tells the other; so are raceways and angles."""
@@ -69,15 +70,45 @@ def estimated_parts(geometry: Any, share: float = 1.0) -> Iterator[Part]:
         above, below = ({key: getattr(geometry, key) * (1.0 + sign * size)} for sign in (1.0, -1.0))
         yield Part(name, f"+-{100.0 * size:.3g} %", (above, below), name in _EVEN)
     if found := _GROOVES.search(words):
-        for side in ("inner", "outer"):
+        low_end, high_end = found[2], found[3]
+        for side in (found[1].strip(),) if found[1] else ("inner", "outer"):
             key = f"{side}_conformity"
             value = getattr(geometry, key)
-            low, high = (value + share * (float(end) - value) for end in found.groups())
+            low, high = (value + share * (float(end) - value) for end in (low_end, high_end))
             yield Part(f"{side} groove", f"{low:.4g} to {high:.4g} of the ball", ({key: low}, {key: high}))
     if found := _COUNT.search(words):
         key, most = found[1], int(found[2])
         count = getattr(geometry, key)
         yield Part(f"{key[:-1]} count", f"{count} +-{most}", ({key: count - most}, {key: count + most}))
+
+
+def without_parts(words: str, known: Iterable[str]) -> str:
+    """Words of an estimate of balls without parts that are known; empty where none is left.
+
+    Parameters
+    ----------
+    words : str
+        The words.
+    known : iterable of str
+        Fields that are known.
+
+    Examples
+    --------
+    >>> from ehdmaps.physics.point.ball_catalogue import ball_estimate
+    >>> without_parts(ball_estimate("6208").estimated, ["balls", "inner_conformity", "ball_diameter"])[-70:]
+    '(ISO 76): pitch diameter to 2 %, outer groove radius 0.515 to 0.53 of it'
+    """
+    known = set(known)
+    head, _, tail = words.rpartition(": ")
+    open_sides = [side for side in ("inner", "outer") if f"{side}_conformity" not in known]
+    left = {0: "", 1: f"{open_sides[0] if open_sides else ''} groove radius \\1"}.get(len(open_sides))
+    if left is not None:
+        tail = _GROOVE_WORDS.sub(left, tail)
+    parts = [part.strip() for part in tail.split(", ")]
+    gone = {"pitch_diameter": "pitch diameter", "ball_diameter": "ball diameter", "balls": "number of balls"}
+    gone_words = [text for key, text in gone.items() if key in known]
+    kept = [part for part in parts if part and not part.startswith(tuple(gone_words) or ("\0",))]
+    return f"{head}: {', '.join(kept)}" if kept else ""
 
 
 def _wider(geometry: Any, part: float) -> dict[str, float]:

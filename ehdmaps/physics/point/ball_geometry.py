@@ -18,8 +18,9 @@ Methods for calculating the modified reference rating life for universally loade
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
-from typing import ClassVar
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar
 
 from ehdmaps.errors import InputError, label_problem
 from ehdmaps.physics.designations.clearance import ClearanceRange, Named
@@ -61,6 +62,8 @@ class BallGeometry(Named):
     clearance_range : ClearanceRange or None
         What the clearance may be by the designation; no part of what makes bearings equal, nor of records. None where
         it is stated.
+    ball_material, ring_material : Material or None
+        Materials of balls and of both rings; None: those that a question states, steel by default.
 
     Raises
     ------
@@ -87,6 +90,8 @@ class BallGeometry(Named):
     label: str | None = field(default=None, compare=False)
     estimated: str | None = None
     clearance_range: ClearanceRange | None = field(default=None, compare=False)
+    ball_material: Material | None = None
+    ring_material: Material | None = None
 
     def __post_init__(self) -> None:
         problems = _problems(self)
@@ -97,6 +102,28 @@ class BallGeometry(Named):
     def rolling_elements(self) -> int:
         """Number of its balls."""
         return self.balls
+
+    def known(self, values: Mapping[str, Any], estimated: str) -> BallGeometry:
+        """The same bearing with parts that are known.
+
+        Parameters
+        ----------
+        values : mapping of str to object
+            Fields that are known.
+        estimated : str
+            What is left of the estimate, in words; empty where nothing is.
+        """
+        return replace(self, **values, estimated=estimated or None)
+
+    def record(self) -> dict[str, float | str]:
+        """See `Named.record`; materials in words."""
+        found = super().record()
+        for part in ("ball", "ring"):
+            material: Material | None = getattr(self, f"{part}_material")
+            if material is not None:
+                modulus, ratio = 1e-9 * material.youngs_modulus, material.poisson_ratio
+                found[f"{part}_material"] = f"{modulus:g} GPa, {ratio:g}, {material.density:g} kg/m3"
+        return found
 
     @property
     def gamma(self) -> float:
@@ -136,9 +163,10 @@ class BallGeometry(Named):
         material : Material
             Material of the balls.
         rings : Material, optional
-            Material of both rings; that of the balls if left out.
+            Material of both rings; that of the balls if left out. What the geometry says of materials goes before.
         """
-        modulus = reduced_modulus(material, material if rings is None else rings)
+        other = material if rings is None else rings
+        modulus = reduced_modulus(self.ball_material or material, self.ring_material or other)
         half = 0.5 * self.ball_diameter
         return (
             Ellipse(half * (1.0 - self.gamma), _across(half, self.inner_conformity), modulus, half),
@@ -146,8 +174,8 @@ class BallGeometry(Named):
         )
 
     def ball_mass(self, material: Material) -> float:
-        """Mass of a ball [kg]."""
-        return material.density * math.pi / 6.0 * self.ball_diameter**3
+        """Mass of a ball [kg], of its own material where that is known."""
+        return (self.ball_material or material).density * math.pi / 6.0 * self.ball_diameter**3
 
     def entrainment_speed(self, inner_speed: float, outer_speed: float = 0.0) -> float:
         """Entrainment speed u = (d_m/4) abs(omega_i - omega_o) (1 - gamma^2) [m/s] at both races, in pure rolling.

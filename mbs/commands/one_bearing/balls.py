@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ehdmaps.errors import AnalysisError, InputError, SolverError
+from ehdmaps.jobs.balls import balls_of
 from ehdmaps.physics.oil_supply import PLAIN
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.solids import STEEL
@@ -42,7 +43,7 @@ def _read(arguments: argparse.Namespace, chosen: Mapping[str, Any], problems: li
     """The bearing of a designation, with its clearance."""
     option = "BEARING"
     try:
-        geometry = ball_estimate(arguments.bearing)
+        geometry = balls_of(arguments.bearing) or ball_estimate(arguments.bearing)
         option = "--clearance"
         if "clearance" in chosen:
             geometry = geometry.with_clearance(float(chosen["clearance"]))

@@ -115,6 +115,15 @@ def read_given(source: str, problems: list[str]) -> Asked | None:
         return Asked(BEARINGS[source], {})
     from ehdmaps.jobs.defaults import SHIPPED  # with the readers of all tables of a job
 
+    if source.lstrip().startswith("{"):
+        from ehdmaps.jobs.table import inline
+
+        values = inline(source, "BEARING", problems)
+        try:
+            return None if values is None else _of_tables({"bearing": values}, "BEARING")
+        except InputError as error:
+            problems += error.problems
+            return None
     is_file = "\0" not in source and os.path.isfile(source)
     if plain_name(source, ROLLERS) and not is_file and source not in SHIPPED:
         try:
@@ -153,17 +162,21 @@ def _from_file(source: str) -> Asked:
 def _alone(source: str) -> Asked | None:
     """The bearing of a file without [grid] and [solver]; None for a job or a map, which have a reader of their own."""
     from ehdmaps.jobs import table
-    from ehdmaps.jobs.problem import read_contacts, read_lubricant
     from ehdmaps.jobs.reader import LONGEST_FILE
-    from ehdmaps.jobs.supply import read_supply, read_surface
-    from ehdmaps.jobs.table import Table
 
     allowed = "a TOML file with [bearing]"
     if first_bytes(source, 4, allowed).startswith((b"CDF", b"\x89HDF")):
         return None
     values = table.parse(read_text(source, LONGEST_FILE, allowed), source)
-    if "grid" in values or "solver" in values:
-        return None
+    return None if "grid" in values or "solver" in values else _of_tables(values, source)
+
+
+def _of_tables(values: dict[str, Any], source: str) -> Asked:
+    """The bearing of tables without [grid] and [solver]."""
+    from ehdmaps.jobs.problem import read_contacts, read_lubricant
+    from ehdmaps.jobs.supply import read_supply, read_surface
+    from ehdmaps.jobs.table import Table
+
     problems: list[str] = []
     top = Table(values, "bearing file", problems)
     top.get("schema")

@@ -6,9 +6,11 @@ import dataclasses
 from collections.abc import Callable
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.balls import read_balls, says_balls
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.designations.reader import BALLS, TAPERED, plain_name
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
+from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.rollers.tapered_catalogue import mirrored, tapered_estimate
 from mbs.scene.fields import MICROMETRE
 from mbs.scene.shafts.standing import read_located
@@ -24,11 +26,11 @@ def reader_of(section: Table) -> Callable[[Table, str], LocatingSpec | None] | N
     Parameters
     ----------
     section : Table
-        A table [[bearings]] with the key `bearing`.
+        A table [[bearings]].
     """
     given = section.get("bearing")
     if not isinstance(given, str):
-        return None
+        return _ball if "bearing" not in section and says_balls(section.get("geometry")) else None
     if plain_name(given, BALLS):
         return _ball
     return _tapered if plain_name(given, (TAPERED,)) else None
@@ -36,8 +38,15 @@ def reader_of(section: Table) -> Callable[[Table, str], LocatingSpec | None] | N
 
 def _ball(section: Table, name: str) -> BallSpec | None:
     """Read a ball bearing; None where a problem was noted."""
-    inner, outer, geometry, turned, angle, offset = read_located(section, name, ball_estimate)
-    clearance = section.quantity("diametral_clearance", "m", -WIDEST, WIDEST, MICROMETRE)
+    keys = "geometry" in section and "bearing" not in section
+    own = section.table("geometry", f"{section.where} geometry") if keys else None
+    known = read_balls(own) if own is not None else None
+    inner, outer, geometry, turned, angle, offset = read_located(
+        section, name, _known(known) if keys else ball_estimate
+    )
+    clearance = None
+    if not keys:
+        clearance = section.quantity("diametral_clearance", "m", -WIDEST, WIDEST, MICROMETRE)
     if geometry is not None:
         if turned and geometry.contact_angle == 0.0:
             section.note("mirrored", f"got true for {geometry.name}, which is alike both ways; delete it")
@@ -52,6 +61,17 @@ def _ball(section: Table, name: str) -> BallSpec | None:
     if inner is None or outer is None or geometry is None:
         return None
     return BallSpec(name, inner, outer, geometry, angle, offset)
+
+
+def _known(geometry: BallGeometry | None) -> Callable[[str], BallGeometry]:
+    """Reader of a bearing whose keys were read before; it has no problems of its own."""
+
+    def read(_: str) -> BallGeometry:
+        if geometry is None:
+            raise InputError(())
+        return geometry
+
+    return read
 
 
 def _tapered(section: Table, name: str) -> TaperedSpec | None:
