@@ -29,10 +29,10 @@ laws: dict[str, Any] = {"dry": dry, "film": (emap.law("series", outside="asympto
 figure, (left, right) = plt.subplots(1, 2, figsize=(7.0, 3.0), layout="constrained")
 for name, (law, films) in laws.items():
     points = [row[0] for row in bearing_points(bearing, law, films, [(0.0, f) for f in loads], [SPEED], T)]
-    K, C = np.array([(point.stiffness[1, 1], point.damping[1, 1]) for point in points]).T  # along the load
+    K, C = np.array([(point.stiffness[2, 2], point.damping[2, 2]) for point in points]).T  # along the load
     left.plot(loads, 1e-6 * K, "--" if name == "dry" else "-")
     right.plot(loads, 1e-3 * C, "--" if name == "dry" else "-")
-    exponent = K * np.array([point.displacement[1] for point in points]) / loads
+    exponent = K * np.array([point.pose[2] for point in points]) / loads
     print(f"{name}: K delta/F = {exponent.round(6)}")
     assert name == "film" or np.allclose(exponent, 10 / 9, rtol=1e-8)  # what the equilibrium leaves of its load
 left.set(xlabel="load, N", ylabel="stiffness, N/um", title="dashed: dry")

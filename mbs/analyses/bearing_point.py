@@ -13,7 +13,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Callable, Iterable, Sequence
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -41,11 +41,8 @@ from mbs.bearings.laws import Law
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
-from mbs.model.findings import Cause, Finding
+from mbs.model.findings import Cause, Finding, RingPoint
 from mbs.model.system import System
-
-if TYPE_CHECKING:
-    from mbs.bearings.locating.locating_point import LocatingPoint
 
 RING = "inner ring"
 """Name of the body that a bearing alone carries."""
@@ -54,7 +51,7 @@ _FREE = 1e-9
 """Stiffness across the load over that along it, below which there is none."""
 
 
-P = TypeVar("P", bound="BearingPoint | LocatingPoint")
+P = TypeVar("P", bound=RingPoint)
 
 _NOTABLE = 0.01, 0.05
 """Errors of k and c along the load from which on they are told."""
@@ -184,7 +181,8 @@ def bearing_points(
         Where no equilibrium is found at any of them.
     """
     force = BearingForce(bearing, law)
-    return points_over(list(loads), speeds, lambda load, speed: bearing_point(force, films, load, speed, temperature))
+    given = [(0.0, *load) for load in loads]
+    return points_over(given, speeds, lambda load, speed: bearing_point(force, films, load[1:], speed, temperature))
 
 
 def ring_at_rest(element: BearingElement, load: Sequence[float], operation: Operation) -> Equilibrium:
@@ -249,12 +247,13 @@ def bearing_point(
     ]
     return BearingPoint(
         bearing=force.bearing,
-        load=given,
+        load=np.array([0.0, *given]),
         inner_speed=speed,
         entrainment_speed=u,
         temperature=temperature,
-        displacement=balance.displacement,
-        matrices=np.stack([balance.element_stiffness[0], balance.element_damping[0]]),
+        pose=pose,
+        stiffness=balance.element_stiffness[0],
+        damping=balance.element_damping[0],
         elements=rollers,
         contacts=contacts,
         loss=rolling_loss(force.bearing, films, contacts, rollers, u, speed, temperature),

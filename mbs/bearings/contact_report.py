@@ -29,7 +29,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -47,8 +46,7 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import ContactState, FilmSource
 from mbs.bearings.force_at_point import RollerLoads
 from mbs.bearings.laws import DryLaw, Law, TableLaw
-from mbs.life import ReferenceLife
-from mbs.model.findings import Finding, WithFindings
+from mbs.model.findings import RingPoint
 
 
 @dataclass(frozen=True, eq=False)
@@ -423,64 +421,28 @@ def loss_of(
     return RollingLoss(power, abs(ring_speed), idle, slowest, sliding)
 
 
-@dataclass(frozen=True, eq=False)
-class BearingPoint(WithFindings):
-    """A bearing in equilibrium.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class BearingPoint(RingPoint):
+    """A cylindrical roller bearing in equilibrium.
 
     Attributes
     ----------
     bearing : Bearing
         Geometry, clearance, profile, slices.
-    load : array, shape (2,)
-        Load on the inner ring, y and z [N].
-    inner_speed : float
-        Speed of the inner ring [rad/s].
     entrainment_speed, temperature : float
         u [m/s], T [K].
-    displacement : array, shape (2,)
-        Displacement of the inner ring against the outer one, y and z [m].
-    matrices : array, shape (2, 6, 6)
-        -d force/d pose and -d force/d velocity of the inner ring.
-    elements : RollerLoads
-        Loads of rollers and slices.
     contacts : BearingContacts
         Pressures and films of all slices.
     loss : RollingLoss
         What rolling costs.
-    findings : tuple of Finding
-        What is beyond its laws, and what else is to be known.
-    failed : bool
-        Whether it has no answer: numbers are NaN, and `problems` say why.
     """
 
     bearing: Bearing
-    load: FloatArray
-    inner_speed: float
     entrainment_speed: float
     temperature: float
-    displacement: FloatArray
-    matrices: FloatArray
     elements: RollerLoads
     contacts: BearingContacts
     loss: RollingLoss
-    findings: tuple[Finding, ...]
-    failed: bool = False
-    axial: ClassVar[float] = 0.0
-
-    @property
-    def stiffness(self) -> FloatArray:
-        """Stiffness of the bearing in y and z, (2, 2) [N/m]."""
-        return self.matrices[0, 1:3, 1:3]
-
-    @property
-    def damping(self) -> FloatArray:
-        """Damping of the bearing in y and z, (2, 2) [N s/m]."""
-        return self.matrices[1, 1:3, 1:3]
-
-    @property
-    def size(self) -> float:
-        """Size of the load [N]."""
-        return float(np.hypot(*self.load))
 
     @property
     def geometry(self) -> BearingGeometry:
@@ -493,29 +455,9 @@ class BearingPoint(WithFindings):
         return cylindrical_ratings(self.geometry)
 
     @property
-    def reference(self) -> ReferenceLife:
-        """Equivalent load and life of ISO/TS 16281, by the rating of ISO 281."""
-        return self.elements.life(self.geometry, inner_turns=True)
-
-    @property
     def smallest_film(self) -> float:
         """Smallest film of all contacts [m]; NaN where no film is known."""
         return float(np.min(self.contacts.minimum_film))
-
-    @property
-    def axes(self) -> FloatArray:
-        """Unit vectors along and across the load, in rows (2, 2)."""
-        along = self.load / self.size
-        return np.array([along, [-along[1], along[0]]])
-
-    def along_across(self, matrix: FloatArray) -> FloatArray:
-        """Diagonal of a matrix (2, 2) in the directions along and across the load, shape (2,)."""
-        return np.asarray(np.diag(self.axes @ matrix @ self.axes.T))
-
-    @property
-    def loaded(self) -> int:
-        """Number of rollers that carry more than 1 % of the highest roller load."""
-        return self.elements.loaded
 
     @property
     def most_loaded(self) -> int:

@@ -111,7 +111,7 @@ def _circuit(path: str, kind: Kind, answer: _Answer) -> str:
     if math.isnan(found.capacitance):
         raise AnalysisError(f"-o {path}: the bearing has no films at this point, and so no capacitance")
     heads = heading(kind, answer.description, points[0])
-    return write_circuit(path, kind.geometry_of(points[0]).name, heads, found)
+    return write_circuit(path, points[0].geometry.name, heads, found)
 
 
 def family_of(name: str, axial: str | None) -> Family:

@@ -1,22 +1,27 @@
 """Findings about bearings: what lies beyond their laws, with the same cause, words and status for every kind.
 
 A bearing says what its contacts feel, as a `Gauge`, and what only its kind can know. Limits and words that all kinds
-have in common are here. How grave a finding is follows from its cause alone.
+have in common are here. How grave a finding is follows from its cause alone. `RingPoint` is one bearing at a load,
+with its findings.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.surface import HARDNESS
 from ehdmaps.units import PRESSURE
+
+if TYPE_CHECKING:
+    from mbs.life import ReferenceLife
 
 SIDES = ("inner", "outer")
 
@@ -237,6 +242,77 @@ class WithFindings:
     def notes(self) -> tuple[str, ...]:
         """Notes on it."""
         return _words(self.findings, (Severity.WARNING, Severity.NOTE))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RingPoint(WithFindings):
+    """A bearing in equilibrium; kinds inherit from it.
+
+    Attributes
+    ----------
+    load : array (3,)
+        Load on the inner ring, x, y and z [N].
+    inner_speed, outer_speed : float
+        Speeds of the rings [rad/s].
+    elements : RollerLoads, BallLoads or TaperedLoads
+        State of its rolling elements.
+    pose : array (6,)
+        Pose of the inner ring in the outer one [m, rad].
+    stiffness, damping : array (6, 6)
+        -d force/d pose and -d force/d velocity.
+    findings : tuple of Finding
+        What is beyond its laws, and what else is to be known.
+    failed : bool
+        Whether it has no answer: numbers are NaN, and `problems` say why.
+    """
+
+    load: FloatArray
+    inner_speed: float
+    outer_speed: float = 0.0
+    elements: Any
+    pose: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+    findings: tuple[Finding, ...]
+    failed: bool = False
+
+    @property
+    def geometry(self) -> Any:
+        """Geometry of the bearing."""
+        raise NotImplementedError
+
+    @property
+    def reference(self) -> ReferenceLife:
+        """Equivalent load and life of ISO/TS 16281, by the rating of ISO 281."""
+        life: ReferenceLife = self.elements.life(self.geometry, abs(self.inner_speed) >= abs(self.outer_speed))
+        return life
+
+    @property
+    def loaded(self) -> int:
+        """Number of rolling elements that carry more than 1 % of the highest inner load."""
+        return int(self.elements.loaded)
+
+    @property
+    def size(self) -> float:
+        """Size of the radial load [N]."""
+        return math.hypot(self.load[1], self.load[2])
+
+    @property
+    def axial(self) -> float:
+        """Axial load [N]."""
+        return float(self.load[0])
+
+    @property
+    def axes(self) -> FloatArray:
+        """Unit vectors along and across the radial load, (2, 3); along y without one."""
+        y, z = (self.load[1:] / self.size) if self.size > 0.0 else (1.0, 0.0)
+        return np.array([[0.0, y, z], [0.0, -z, y]])
+
+    def along_across(self, matrix: FloatArray) -> FloatArray:
+        """Entries of a matrix (6, 6) along the radial load, across it, and along the axis, (3,)."""
+        along, across = self.axes
+        part = matrix[:3, :3]
+        return np.array([along @ part @ along, across @ part @ across, part[0, 0]])
 
 
 def _words(found: Iterable[Finding], kinds: tuple[Severity, ...]) -> tuple[str, ...]:

@@ -238,7 +238,7 @@ BAD = (
     (
         "NU308",
         ["--law", "hurtz"],
-        "--law: got 'hurtz' (did you mean 'hertz'?) for a bearing of cylindrical rollers; allowed: hertz",
+        "--law: got 'hurtz' (did you mean 'hertz'?) for a cylindrical roller bearing; allowed: hertz",
     ),
     ("NU308", ["--law", "map"], "--law: got 'map' without a map"),
     ("NU308", ["--map", "no.nc"], "--map: no.nc: cannot be read"),

@@ -84,7 +84,7 @@ def test_one_bearing_is_a_function():
     assert "law dry Hertz" in found.text or "dry Hertz" in found.text
     assert isinstance(found.plot(), Figure)
     # It is the command: the same points.
-    assert [row[0].load[0] for row in found.points] == [1000.0, 5000.0]
+    assert [row[0].load[1] for row in found.points] == [1000.0, 5000.0]
     ball = mbs.bearing("7208B", "1 kN", "0 rpm", axial="1 kN", choices={"law": "hertz"})
     assert ball.dataset["stiffness_axial"].shape == (1, 1) and "mean contact angle" in ball.text
     with pytest.raises(InputError, match="bearing, choices: got 'colour'; allowed: law, map, "):

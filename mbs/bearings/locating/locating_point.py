@@ -18,11 +18,10 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import written
 from mbs.bearings.locating.locating_element import LocatingElement, Settled
-from mbs.life import ReferenceLife
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
 from mbs.model.equilibrium import equilibrium
-from mbs.model.findings import Finding, WithFindings
+from mbs.model.findings import RingPoint
 from mbs.model.system import System
 
 RING, TURNING = "inner ring", Operation(1.0)
@@ -51,46 +50,23 @@ class Course(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class LocatingPoint(WithFindings):
+class LocatingPoint(RingPoint):
     """A bearing that carries axial load in equilibrium; kinds inherit from it.
 
     Attributes
     ----------
     force : LocatingForce
         Geometry and laws.
-    load : array (3,)
-        Load on the inner ring, x, y and z [N].
-    inner_speed, outer_speed : float
-        [rad/s].
-    elements : BallLoads or TaperedLoads
-        State of its rolling elements.
-    pose : array (6,)
-        Pose of the inner ring in the outer one.
-    stiffness, damping : array (6, 6)
-        -d force/d pose and -d force/d velocity.
     pressure, central_film, minimum_film : array (2, Z)
         Largest Hertz pressure [Pa] and smallest films [m] of the inner and outer contacts; NaN for films of contacts
         without load, or without an oil.
-    findings : tuple of Finding
-        What is beyond its laws, and what else is to be known.
-    failed : bool
-        Whether it has no answer: numbers are NaN, and `problems` say why.
     """
 
     element: ClassVar[type[LocatingElement]]
     force: Any
-    load: FloatArray
-    inner_speed: float
-    outer_speed: float
-    elements: Any
-    pose: FloatArray
-    stiffness: FloatArray
-    damping: FloatArray
     pressure: FloatArray
     central_film: FloatArray
     minimum_film: FloatArray
-    findings: tuple[Finding, ...]
-    failed: bool = False
 
     @classmethod
     def at(
@@ -200,11 +176,6 @@ class LocatingPoint(WithFindings):
         raise NotImplementedError
 
     @property
-    def matrices(self) -> FloatArray:
-        """Stiffness and damping, (2, 6, 6)."""
-        return np.stack([self.stiffness, self.damping])
-
-    @property
     def geometry(self) -> Any:
         """Geometry of the bearing."""
         return self.force.geometry
@@ -214,39 +185,6 @@ class LocatingPoint(WithFindings):
         """C of ISO 281 and C0 of ISO 76 by the inner geometry [N]."""
         ratings: tuple[float, float] = self.force.ratings
         return ratings
-
-    @property
-    def reference(self) -> ReferenceLife:
-        """Equivalent load and life of ISO/TS 16281, by the rating of ISO 281."""
-        life: ReferenceLife = self.elements.life(self.geometry, abs(self.inner_speed) >= abs(self.outer_speed))
-        return life
-
-    @property
-    def loaded(self) -> int:
-        """Number of rolling elements that carry more than 1 % of the highest inner load."""
-        return int(self.elements.loaded)
-
-    @property
-    def size(self) -> float:
-        """Size of the radial load [N]."""
-        return math.hypot(self.load[1], self.load[2])
-
-    @property
-    def axial(self) -> float:
-        """Axial load [N]."""
-        return float(self.load[0])
-
-    @property
-    def axes(self) -> FloatArray:
-        """Unit vectors along and across the radial load, (2, 3); along y without one."""
-        y, z = (self.load[1:] / self.size) if self.size > 0.0 else (1.0, 0.0)
-        return np.array([[0.0, y, z], [0.0, -z, y]])
-
-    def along_across(self, matrix: FloatArray) -> tuple[float, float, float]:
-        """Entries of a matrix (6, 6) along the radial load, across it, and along the axis."""
-        along, across = self.axes
-        part = matrix[:3, :3]
-        return float(along @ part @ along), float(across @ part @ across), float(part[0, 0])
 
     @property
     def smallest_film(self) -> float:

@@ -39,7 +39,7 @@ from mbs.commands.one_bearing.shared import (
 )
 from mbs.output.one_bearing.cylindrical import CYLINDRICAL, asperity_band
 from mbs.output.one_bearing.kind import Points
-from mbs.scene.choices import LACKS, OPTIONS
+from mbs.scene.choices import LACKS
 from mbs.scene.contact_laws import TABLE_FORM, dry_words, read_law, table_path, table_problems
 from mbs.scene.map_set import OTHER_OIL, TABLE_LAW, geometry_problems, structure_words
 from mbs.scene.specs import BearingSpec
@@ -360,7 +360,7 @@ def _point(
     **__: Any,
 ) -> BearingPoint:
     """The point at a load across the axis."""
-    return bearing_point(force, films, load, speed, temperature)
+    return bearing_point(force, films, load[1:], speed, temperature)
 
 
 def _beside(request: Request, points: Points) -> list[str]:
@@ -381,8 +381,8 @@ def _beside(request: Request, points: Points) -> list[str]:
 
 CYLINDERS = Family(
     kind=CYLINDRICAL,
-    words="bearing of cylindrical rollers",
-    taken=tuple(choice.name for choice in OPTIONS if choice.name != "films"),
+    words="cylindrical roller bearing",
+    taken=("law", "map", "physics", "structural-law", "supply", "roughness", "temperature", "clearance"),
     own=("ring-temperatures", "profile", "slices", "coupled"),
     film_laws=("formula", TABLE_LAW, "map"),
     beside_laws=f"; {TABLE_FORM}",

@@ -109,9 +109,7 @@ def write_export(path: str, given: Export) -> str:
     heads = heading(family.kind, given.description, points[0])
     if is_linear(path):
         oscillating = family.oscillating(points) if given.memory and family.oscillating else None
-        return write_linear(
-            path, family.kind.geometry_of(points[0]).name, heads, points, given.outer_speed, oscillating
-        )
+        return write_linear(path, points[0].geometry.name, heads, points, given.outer_speed, oscillating)
     assert family.exported is not None  # `is_export` was asked of such families alone
     kind, ends, words = family.exported(), _turning_speeds(given), DRY
     films = None if ends is None else given.films

@@ -154,7 +154,7 @@ def write_linear(
     program = _format(path)
     load, *notes = around(points)
     if oscillating is None:
-        matrices = np.array([point.matrices for point in points])[:, :, None]
+        matrices = np.array([[point.stiffness, point.damping] for point in points])[:, :, None]
         oscillating = Oscillating("of slow motion", np.zeros(1), matrices)
     motion = f"K and C {oscillating.words}; the outer ring turns with {RPM.text(outer_speed)}"
     speeds, matrices = np.array([point.inner_speed for point in points]), oscillating.matrices

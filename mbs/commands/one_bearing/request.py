@@ -60,7 +60,7 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
     problems: list[str] = []
     chosen = read_choices(arguments, problems)
     asked = family.read(arguments, chosen, problems)
-    refuse_others(arguments, list(chosen), family.taken, family.words, problems, family.own)
+    refuse_others(arguments, chosen, family, problems)
     law, damper = read_law(chosen, family, problems)
     dry = law not in family.film_laws
     operating = read_operating(arguments, problems, axial=family.kind.axial)
@@ -165,12 +165,11 @@ def points_of(request: Request) -> list[list[Any]]:
         What is asked.
     """
     at_speed, asked = cache(request.family.at_speed(request)), request.operating
-    first = 0 if request.family.kind.axial else 1  # of a bearing that moves across its axis alone
-    loads = [(asked.axial, load * asked.way[0], load * asked.way[1])[first:] for load in asked.loads]
+    loads = [(asked.axial, load * asked.way[0], load * asked.way[1]) for load in asked.loads]
     return points_over(loads, asked.speeds, lambda load, speed: _point(request, load, speed, at_speed(speed)))
 
 
-def _point(request: Request, load: tuple[float, ...], speed: float, at: AtSpeed) -> Any:
+def _point(request: Request, load: tuple[float, float, float], speed: float, at: AtSpeed) -> Any:
     """The point at a load and a speed, with what is to be said of its films."""
     description = request.description
     point = request.family.point(

@@ -243,12 +243,7 @@ def read_operating(arguments: argparse.Namespace, problems: list[str], *, axial:
 
 
 def refuse_others(
-    arguments: argparse.Namespace,
-    chosen: Sequence[str],
-    taken: Sequence[str],
-    kind: str,
-    problems: list[str],
-    own: Sequence[str] = (),
+    arguments: argparse.Namespace, chosen: Mapping[str, Any], family: Family, problems: list[str]
 ) -> None:
     """Note options that are for bearings of other families.
 
@@ -256,25 +251,23 @@ def refuse_others(
     ----------
     arguments : Namespace
         Options as they were parsed.
-    chosen, taken : sequence of str
-        Choices that were given, and those that the bearing takes.
-    kind : str
-        Kind of the bearing, in words.
+    chosen : mapping of str to object
+        Choices that were given, by their names.
+    family : Family
+        Family of the bearing.
     problems : list of str
         What is wrong; added to.
-    own : sequence of str
-        Further options that the bearing takes, some of `_OWN`.
     """
-    given = [f"--{name}" for name in chosen if name not in (*taken, "know")]
+    given = [f"--{name}" for name in chosen if name not in (*family.taken, "know")]
     given += [
         f"--{name}"
         for name, usual in _OWN.items()
-        if name not in own and getattr(arguments, name.replace("-", "_")) != usual
+        if name not in family.own and getattr(arguments, name.replace("-", "_")) != usual
     ]
     if given:
-        names = (*taken, *own, "oil", "axial", "outer-speed", "tilts", "direction", "plot")
-        allowed = ", ".join(f"--{name}" for name in names)
-        problems.append(f"{', '.join(given)}: not for {kind}s; allowed: {allowed} and -o; leave it out")
+        axial = ("axial", "outer-speed", "tilts") if family.kind.axial else ()
+        allowed = ", ".join(f"--{name}" for name in (*family.taken, *family.own, "oil", *axial, "direction", "plot"))
+        problems.append(f"{', '.join(given)}: not for {family.words}s; allowed: {allowed} and -o; leave it out")
 
 
 _OWN = {

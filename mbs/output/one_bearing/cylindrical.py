@@ -143,7 +143,7 @@ def asperity_band(corners: Sequence[BearingPoint]) -> list[str]:
     if not corners:
         return []
     both = [(display, point.along_across(getattr(point, name))) for point in corners for display, name in _MATRICES]
-    values = [display.value(float(value)) for display, diagonal in both for value in diagonal]
+    values = [display.value(float(value)) for display, diagonal in both for value in diagonal[:2]]
     soft, stiff = values[:4], values[4:]
     k, k_across, c, c_across = (f"{a:.4g} to {b:.4g}" for a, b in zip(soft, stiff, strict=True))
     return [
@@ -231,7 +231,6 @@ CYLINDRICAL = Kind(
     ),
     of_one=_of_one,
     pairs=_pairs,
-    geometry_of=lambda point: point.bearing.geometry,
     attributes=_attributes,
     coordinates=lambda point: {
         "slice": ("slice", point.elements.position, {"units": "m", "long_name": "place along the roller"})

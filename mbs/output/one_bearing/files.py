@@ -116,7 +116,7 @@ def point_dataset(kind: Kind, description: Description, points: Points) -> xr.Da
     }
     loaded = {"axial_load_N": first.axial, "outer_speed_rad_s": first.outer_speed} if kind.axial else {}
     about: dict[str, Any] = {
-        "bearing": kind.geometry_of(first).name,
+        "bearing": first.geometry.name,
         **kind.attributes(description, first),
         "bearing_law": description.law,
         "films": description.films,

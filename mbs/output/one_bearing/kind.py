@@ -220,8 +220,6 @@ class Kind:
         (point, index) -> what is told of a rolling element.
     pairs : callable
         (point) -> lines on its contacts between pressure and films, and after them.
-    geometry_of : callable
-        (point) -> geometry of the bearing.
     attributes : callable
         (description, point) -> attributes of a dataset; by default the geometry.
     coordinates : callable
@@ -249,7 +247,6 @@ class Kind:
     heads: tuple[str, str]
     of_one: Callable[[Any, int], str]
     pairs: Callable[[Any], tuple[Sequence[Pair], Sequence[Pair]]] = lambda point: ((), ())
-    geometry_of: Callable[[Any], Any] = lambda point: point.force.geometry
     attributes: Callable[[Description, Any], dict[str, Any]] = _record
     coordinates: Callable[[Any], dict[str, Any]] = lambda point: {}
     curves_of: Callable[[Any], Curves] | None = None
@@ -297,7 +294,7 @@ def numbers_of(own: Sequence[Number], *, axial: bool, speed: str = "") -> tuple[
         for place, way in enumerate(ways)
     ]
     moved = [
-        Number(f"displacement_{way}", "m", f"inner ring against the outer one, {_WORDS[way]}", _place(axial, place))
+        Number(f"displacement_{way}", "m", f"inner ring against the outer one, {_WORDS[way]}", _place(place))
         for place, way in enumerate(ways)
     ]
     tilts = [
@@ -322,7 +319,7 @@ def numbers_of(own: Sequence[Number], *, axial: bool, speed: str = "") -> tuple[
 
 def _viscosity_ratio(point: Any, description: Description) -> float:
     """Ratio kappa of ISO 281; NaN where nothing turns, or no oil is known."""
-    speed = abs(point.inner_speed - getattr(point, "outer_speed", 0.0))
+    speed = abs(point.inner_speed - point.outer_speed)
     if description.oil is None or speed == 0.0:
         return math.nan
     oil = description.oil.at(description.temperature)
@@ -339,11 +336,9 @@ def _entry(name: str, way: int) -> Callable[[Any, Description], Any]:
     return lambda point, _: point.along_across(getattr(point, name))[way]
 
 
-def _place(axial: bool, way: int) -> Callable[[Any, Description], Any]:
+def _place(way: int) -> Callable[[Any, Description], Any]:
     """Reader of the displacement in a direction."""
-    if way == 2:
-        return lambda point, _: point.pose[0]
-    return lambda point, _: (point.axes @ (point.pose[:3] if axial else point.displacement))[way]
+    return lambda point, _: point.pose[0] if way == 2 else (point.axes @ point.pose[:3])[way]
 
 
 def _tilt(place: int) -> Callable[[Any, Description], Any]:

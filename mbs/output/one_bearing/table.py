@@ -69,7 +69,7 @@ def heading(kind: Kind, description: Description, point: Any) -> list[str]:
     point : object
         One of them.
     """
-    geometry = kind.geometry_of(point)
+    geometry = point.geometry
     return [
         f"{geometry.title}: law {description.law}; {description.films}",
         *(f"  {line}" for line in kind.about(description, point)),
