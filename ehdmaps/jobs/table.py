@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
 from ehdmaps.errors import InputError
@@ -290,6 +290,29 @@ class Table:
             self.note(key, f"got {short(value)}{closest(value, allowed)}; allowed: {listed}")
             return None
         return value
+
+    def flag(self, key: str) -> bool:
+        """Return whether a key is true; false where it is absent."""
+        value = self.get(key)
+        if key in self and not isinstance(value, bool):
+            self.note(key, f"got {short(value)}; allowed: true, false")
+        return value is True
+
+    def tables(self, key: str, allowed: str) -> Iterator[Table]:
+        """Yield the tables of a list; none where it is absent.
+
+        Parameters
+        ----------
+        key : str
+            Key in this table.
+        allowed : str
+            How messages say what is allowed, a list of tables with such keys.
+        """
+        given = self.get(key)
+        if key in self and not isinstance(given, list):
+            self.note(key, f"got {short(given)}; allowed: {allowed}")
+        for index, values in enumerate(given if isinstance(given, list) else []):
+            yield Table(values, f"{self.where} {key}[{index}]", self.problems)
 
     def close(self, others: tuple[str, ...] = ()) -> None:
         """Note every key that nobody asked for; `others` are keys that were not due this time."""

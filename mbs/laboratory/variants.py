@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import FloatArray, variable
 from ehdmaps.errors import AnalysisError, InputError, Problems
 from mbs.analyses.case import Failed, Progress, side_by_side, silent
 from mbs.analyses.operating import held
@@ -379,22 +379,15 @@ def variants_dataset(rows: Sequence[Variant], sensors: Sequence[Sensor]) -> xr.D
     sensors : sequence of Sensor
         The sensors, in the order of `Variant.differences`.
     """
-    variables = {
-        name: (
-            ("variant", "sensor"),
-            np.array(
-                [
-                    [getattr(entry, part) for entry in row.differences] if row.differences else [np.nan] * len(sensors)
-                    for row in rows
-                ],
-                dtype=np.float64,
-            ),
-            {"units": "dB", "long_name": f"{words}, second law minus first"},
+    unknown, of_both = [np.nan] * len(sensors), ("variant", "sensor")
+    variables: dict[str, Any] = {}
+    for name, part, words in _QUANTITIES:
+        values = [[getattr(entry, part) for entry in row.differences] or unknown for row in rows]
+        variables[name] = variable(
+            of_both, np.array(values, dtype=np.float64), "dB", f"{words}, second law minus first"
         )
-        for name, part, words in _QUANTITIES
-    }
     texts = {
-        name: ("variant", [str(getattr(row, name)) for row in rows], {"long_name": words})
+        name: variable("variant", [str(getattr(row, name)) for row in rows], "", words)
         for name, words in (
             ("key", "what was changed; empty for the base"),
             ("value", "to what it was changed"),
@@ -402,7 +395,7 @@ def variants_dataset(rows: Sequence[Variant], sensors: Sequence[Sensor]) -> xr.D
         )
     }
     calls = np.array([sum(row.outside.values()) for row in rows], dtype=np.int64)
-    outside = {"outside_calls": ("variant", calls, {"units": "1", "long_name": "law calls outside the map"})}
+    outside = {"outside_calls": variable("variant", calls, "1", "law calls outside the map")}
     return xr.Dataset(
         {**variables, **texts, **outside},
         coords={"sensor": [sensor.name for sensor in sensors]},

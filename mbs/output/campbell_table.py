@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import FloatArray, variable
 from ehdmaps.units import RPM, Display
 from mbs.spectral.campbell import RunUpSpectra
 from mbs.spectral.levels import Reference, level
@@ -49,48 +49,33 @@ def campbell_dataset(
             raise ValueError(
                 "campbell_dataset: the results have different speeds; allowed: results of one speed profile"
             )
-    unit = reference.text
+    unit, by_law = reference.text, ("law", "speed")
+    lines, sums = (np.stack([getattr(one.campbell, name) for one in results]) for name in ("level", "sum_level"))
+    of_turns = np.stack([level(one.spectra.mean(), reference.value) for one in results])
     variables: dict[str, Any] = {
-        "level": (
-            ("law", "speed", "frequency"),
-            np.stack([result.campbell.level for result in results]),
-            {"units": unit, "long_name": "level of the lines, root mean square of a sine"},
-        ),
-        "sum_level": (
-            ("law", "speed"),
-            np.stack([result.campbell.sum_level for result in results]),
-            {"units": unit, "long_name": "level of the root mean square of all lines together"},
-        ),
-        "time": ("speed", first.campbell.time, {"units": "s", "long_name": "middle of the window"}),
-        "order_level": (
-            ("law", "order"),
-            np.stack([level(result.spectra.mean(), reference.value) for result in results]),
-            {"units": unit, "long_name": "level over orders, mean square of all windows over turns"},
+        "level": variable((*by_law, "frequency"), lines, unit, "level of the lines, root mean square of a sine"),
+        "sum_level": variable(by_law, sums, unit, "level of the root mean square of all lines together"),
+        "time": variable("speed", first.campbell.time, "s", "middle of the window"),
+        "order_level": variable(
+            ("law", "order"), of_turns, unit, "level over orders, mean square of all windows over turns"
         ),
     }
     coordinates: dict[str, Any] = {
         "law": list(laws),
-        "speed": ("speed", first.campbell.speeds, {"units": "rad/s", "long_name": "speed of the system"}),
-        "frequency": ("frequency", first.campbell.frequencies, {"units": "Hz", "long_name": "frequency"}),
-        "order": ("order", first.spectra.orders, {"units": "1", "long_name": "periods a turn of the system"}),
+        "speed": variable("speed", first.campbell.speeds, "rad/s", "speed of the system"),
+        "frequency": variable("frequency", first.campbell.frequencies, "Hz", "frequency"),
+        "order": variable("order", first.spectra.orders, "1", "periods a turn of the system"),
     }
     if first.tracks is not None:
-        tracks = [result.tracks for result in results if result.tracks is not None]
-        variables["track_level"] = (
-            ("law", "track_speed", "track"),
-            np.stack([track.level(reference.value) for track in tracks]),
-            {"units": unit, "long_name": "level of single orders; not a number above the band"},
-        )
+        tracks = np.stack([one.tracks.level(reference.value) for one in results if one.tracks is not None])
+        words = "level of single orders; not a number above the band"
+        variables["track_level"] = variable(("law", "track_speed", "track"), tracks, unit, words)
         coordinates |= {
-            "track_speed": ("track_speed", first.tracks.speeds, {"units": "rad/s", "long_name": "speed of the system"}),
-            "track": ("track", first.tracks.orders, {"units": "1", "long_name": "periods a turn of the system"}),
+            "track_speed": variable("track_speed", first.tracks.speeds, "rad/s", "speed of the system"),
+            "track": variable("track", first.tracks.orders, "1", "periods a turn of the system"),
         }
         variables |= {
-            f"peak_{name}": (
-                ("law", "peak"),
-                _peaks(results, name),
-                {"units": unit if name == "level" else of, "long_name": words},
-            )
+            f"peak_{name}": variable(("law", "peak"), _peaks(results, name), unit if name == "level" else of, words)
             for name, of, words in _PEAK
         }
     attributes = {

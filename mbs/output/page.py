@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure, SubFigure
+from matplotlib.figure import Figure, FigureBase
 from matplotlib.patches import Patch
 from matplotlib.ticker import ScalarFormatter
 
@@ -121,12 +121,12 @@ def frequency_scale(frequencies: FloatArray) -> str:
     return "log" if first > 0.0 and middle < _LOGARITHMIC * 0.5 * (first + last) else "linear"
 
 
-def left_out(figure: Figure | SubFigure, handles: Sequence[Artist], missing: int, columns: int = 3) -> None:
+def left_out(figure: FigureBase, handles: Sequence[Artist], missing: int, columns: int = 3) -> None:
     """A legend below a figure, with a line on sensors that are not drawn; nothing where there is neither.
 
     Parameters
     ----------
-    figure : matplotlib.figure.Figure or SubFigure
+    figure : matplotlib.figure.FigureBase
         The figure.
     handles : sequence of matplotlib.artist.Artist
         Entries of the legend.

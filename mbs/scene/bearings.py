@@ -149,13 +149,8 @@ def read_bearing(section: Table, name: str) -> BearingSpec | LocatingSpec | Matr
     slices = section.integer("slices", 1, 10000) or 41
     angle = section.quantity("start_angle", "rad", -7.0, 7.0, DEGREE) or 0.0
     rollers = section.choice("rollers", ("massless", "bodies")) or "massless"
-    centrifugal = section.get("centrifugal")
-    if "centrifugal" in section and not isinstance(centrifugal, bool):
-        section.note("centrifugal", f"got {short(centrifugal)}; allowed: true, false")
-    coupled = section.get("slices_coupled")
-    if "slices_coupled" in section and not isinstance(coupled, bool):
-        section.note("slices_coupled", f"got {short(coupled)}; allowed: true, false")
-    elif coupled and rollers == "bodies":
+    centrifugal, coupled = section.flag("centrifugal"), section.flag("slices_coupled")
+    if coupled and rollers == "bodies":
         section.note("slices_coupled", "got true with rollers = 'bodies'; allowed: with rollers = 'massless'")
     elif coupled and slices > MOST_COUPLED:
         section.note("slices", f"got {slices} with slices_coupled; allowed: at most {MOST_COUPLED}")
@@ -175,11 +170,11 @@ def read_bearing(section: Table, name: str) -> BearingSpec | LocatingSpec | Matr
         slices,
         angle,
         rollers == "bodies",
-        centrifugal is True,
+        centrifugal,
         thermal,
         mounting,
         supply,
-        coupled is True,
+        coupled,
         pocket,
     )
     if not (isinstance(section.get("bearing"), str) or any(key in section for key in RIB_KEYS)):

@@ -371,13 +371,8 @@ class _Reader:
 
     def _parts(self, section: Table) -> list[Inertia]:
         """Read what a body is made of: cylinders, or mass and moments of inertia."""
-        given = section.get("cylinders")
-        found: list[Inertia | None] = []
-        if "cylinders" in section and not isinstance(given, list):
-            section.note("cylinders", f"got {short(given)}; allowed: a list of tables with from, to, diameter")
-        for index, values in enumerate(given if isinstance(given, list) else []):
-            table = Table(values, f"{section.where} cylinders[{index}]", section.problems)
-            found.append(fields.cylinder(table))
+        cylinders = section.tables("cylinders", "a list of tables with from, to, diameter")
+        found: list[Inertia | None] = [fields.cylinder(table) for table in cylinders]
         mass = section.quantity("mass", "kg", 1e-6, 1e6, Display("kg"))
         unit = Display("kg m^2")
         polar = section.quantity("polar_inertia", "kg m^2", 0.0, 1e6, unit)

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ehdmaps.arrays import variable
 from ehdmaps.errors import InputError
 from ehdmaps.inputs import check_input
 from ehdmaps.netcdf_structure import DAMAGE, structure_problem
@@ -42,19 +43,15 @@ def signal_variables(data: TimeData) -> xr.Dataset:
         Records of the same times and channels, each with speed and angle.
     """
     first, several = data.records[0], len(data.records) > 1
-    dims: tuple[str, ...] = ("signal_time", "sensor")
+    dims = (*(("law",) if several else ()), "signal_time", "sensor")
     values = np.stack([record.values for record in data.records]) if several else first.values
     variables: dict[str, Any] = {
-        "signal": (
-            (("law", *dims) if several else dims),
-            values,
-            {"units": "by signal_unit", "long_name": "signals of the sensors, one a step"},
-        ),
-        "signal_unit": ("sensor", _texts([c.unit for c in first.channels]), {"long_name": "unit of the signal"}),
-        "quantity": ("sensor", _texts([c.recorded for c in first.channels]), {"long_name": "what the sensor measures"}),
+        "signal": variable(dims, values, "by signal_unit", "signals of the sensors, one a step"),
+        "signal_unit": variable("sensor", _texts([c.unit for c in first.channels]), "", "unit of the signal"),
+        "quantity": variable("sensor", _texts([c.recorded for c in first.channels]), "", "what the sensor measures"),
     }
     coordinates: dict[str, Any] = {
-        "signal_time": ("signal_time", first.time, {"units": "s", "long_name": "time of the signals"}),
+        "signal_time": variable("signal_time", first.time, "s", "time of the signals"),
         "sensor": _texts(list(first.names)),
     }
     for name, unit, words in (("speed", "rad/s", "speed of the system"), ("angle", "rad", "angle turned")):
@@ -68,7 +65,7 @@ def signal_variables(data: TimeData) -> xr.Dataset:
         words = "orders that the machine excites: periods a turn of the system"
         coordinates["excited"] = _texts([name for _, name in data.orders])
         values = np.array([order for order, _ in data.orders])
-        variables["followed_order"] = ("excited", values, {"units": "1", "long_name": words})
+        variables["followed_order"] = variable("excited", values, "1", words)
     attributes: dict[str, Any] = {"label": first.label, **(data.attributes or {}), "title": data.title}
     if data.look is not None:
         given = (data.look.sensor, data.look.highest, data.look.window)

@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ehdmaps.physics.rollers.ribbed_geometry import NO_RIBS, RibbedGeometry, mirrored_ribs, ribbed_way, with_ribs
-from ehdmaps.units import short
 from mbs.gears.pair import GearPair
 from mbs.scene.fields import FORCE, MICROMETRE
 from mbs.scene.shafts.standing import FARTHEST
@@ -41,9 +40,7 @@ def read_ribs(section: Table, spec: BearingSpec) -> BearingSpec:
     given = [key for key in RIB_KEYS if key in section]
     clearance = section.quantity("axial_clearance", "m", 0.0, FARTHEST, MICROMETRE) or 0.0
     offset = section.quantity("axial_offset", "m", -FARTHEST, FARTHEST, MICROMETRE) or 0.0
-    mirrored = section.get("mirrored")
-    if "mirrored" in section and not isinstance(mirrored, bool):
-        section.note("mirrored", f"got {short(mirrored)}; allowed: true, false")
+    mirrored = section.flag("mirrored")
     if not way:
         for key in given:
             section.note(key, f"got a bearing without ribs on both rings; {NO_RIBS}")
@@ -53,7 +50,7 @@ def read_ribs(section: Table, spec: BearingSpec) -> BearingSpec:
         spec.name,
         spec.inner,
         spec.outer,
-        mirrored_ribs(geometry) if mirrored is True else geometry,
+        mirrored_ribs(geometry) if mirrored else geometry,
         spec.start_angle,
         offset,
         spec.profile,

@@ -132,12 +132,10 @@ def read_located(section: Table, name: str, estimate: Callable[[str], Geometry])
     except InputError as error:
         for problem in error.problems:
             section.note("bearing", problem.partition("bearing designation: ")[2] or problem)
-    mirrored = section.get("mirrored")
-    if "mirrored" in section and not isinstance(mirrored, bool):
-        section.note("mirrored", f"got {short(mirrored)}; allowed: true, false")
+    mirrored = section.flag("mirrored")
     angle = section.quantity("start_angle", "rad", -7.0, 7.0, fields.DEGREE) or 0.0
     offset = section.quantity("axial_offset", "m", -FARTHEST, FARTHEST, fields.MICROMETRE) or 0.0
-    return Located(inner, outer, geometry, mirrored is True, angle, offset)
+    return Located(inner, outer, geometry, mirrored, angle, offset)
 
 
 def read_gravity(operation: Table, shafts: object) -> tuple[float, float, float] | None:

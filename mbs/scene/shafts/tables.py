@@ -138,12 +138,8 @@ def _frames(section: Table, standing: Mapping[str, float]) -> dict[str, float]:
 def _discs(section: Table) -> tuple[list[Disc], dict[str, float]]:
     """Read the rigid parts of a shaft, and the places of those that have a name [m]."""
     allowed = "a list of tables with at, diameter, width, or at, mass, and if wanted polar_inertia, transverse_inertia"
-    given = section.get("discs")
-    if "discs" in section and not isinstance(given, list):
-        section.note("discs", f"got {short(given)}; allowed: {allowed}")
     discs, places = [], {}
-    for index, values in enumerate(given if isinstance(given, list) else []):
-        table = Table(values, f"{section.where} discs[{index}]", section.problems)
+    for table in section.tables("discs", allowed):
         name = fields.text(table, "name")
         disc = _disc(table)
         if name in places:
