@@ -7,7 +7,7 @@ import dataclasses
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ehdmaps.errors import InputError, Problems
 from ehdmaps.outputs import FIGURE, Output, output_problems
@@ -23,14 +23,13 @@ from mbs.analyses.recorded import (
     recorded_run_of,
 )
 from mbs.analyses.sensors import ALL_SENSORS, chosen_sensors, followed_orders
-from mbs.commands.common import read_option, write, write_plot
+from mbs.commands.common import out_of_place, read_band, write, write_plot
 from mbs.output.campbell_table import highest_line, peak_lines, resolution_lines, sensor_line
 from mbs.output.files import RESULT
 from mbs.output.time_files import is_time_data, read_time_data, signal_outputs, write_time_data
 from mbs.scene.assembly import Model
 from mbs.scene.choices import OPTIONS
-from mbs.scene.fields import HERTZ, MILLISECOND
-from mbs.settings import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST, CampbellSettings
+from mbs.settings import CampbellSettings
 from mbs.spectral.campbell import RunUpSpectra
 from mbs.spectral.levels import Reference, difference_text
 from mbs.timedata.records import TimeChannel, TimeData
@@ -47,7 +46,7 @@ _OF_A_SCENE = (
 )
 """Options that say something of a simulation, and nothing of a run that is recorded."""
 
-_OF_A_SPEED = ("speed_channel", "tacho", "pulses", "speed_table")
+OF_A_SPEED = ("speed_channel", "tacho", "pulses", "speed_table")
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,8 +57,8 @@ class Look:
     ----------
     sensors : list of str
         Names of sensors; none for that of the scene.
-    highest, window : float or None
-        Highest frequency [Hz], and length of the windows [s].
+    band : dict
+        Highest frequency [Hz] and length of the windows [s], where they are given, as `CampbellSettings` calls them.
     orders : tuple of float
         Orders to follow; none for those of the machine.
     source : SpeedSource
@@ -71,8 +70,7 @@ class Look:
     """
 
     sensors: list[str]
-    highest: float | None
-    window: float | None
+    band: dict[str, Any]
     orders: tuple[float, ...]
     source: SpeedSource
     measured: str | None
@@ -88,8 +86,7 @@ class Look:
         return dataclasses.replace(
             given,
             sensor=self.sensors[0] if self.sensors and ALL_SENSORS not in self.sensors else given.sensor,
-            highest=given.highest if self.highest is None else self.highest,
-            window=given.window if self.window is None else self.window,
+            **self.band,
             orders=self.orders or given.orders,
         )
 
@@ -104,18 +101,14 @@ def read_look(arguments: argparse.Namespace, problems: list[str]) -> Look:
     problems : list of str
         What is wrong is appended.
     """
-    highest = read_option("--highest", arguments.highest, "Hz", (LOWEST_HIGHEST, HIGHEST_HIGHEST), HERTZ, problems)
-    window = read_option("--window", arguments.window, "s", (SHORTEST, LONGEST), MILLISECOND, problems)
-    source = read_source(arguments, problems)
+    band, source = read_band(arguments, problems), read_source(arguments, problems)
     measured = getattr(arguments, "measured", None)
     if measured is None:
-        problems += [
-            f"--{name.replace('_', '-')}: stands without --measured; allowed: with it, or with a recorded run"
-            for name in ("channel", *_OF_A_SPEED)
-            if _is_scene(arguments) and getattr(arguments, name, None)
-        ]
+        idle = ("channel", *OF_A_SPEED) if _is_scene(arguments) else ()
+        words = "stands without --measured; allowed: with it, or with a recorded run"
+        problems += out_of_place(arguments, idle, words)
     sensors, channels = (_list(arguments, name) for name in ("sensor", "channel"))
-    return Look(sensors, highest, window, _orders(arguments, problems), source, measured, channels)
+    return Look(sensors, band, _orders(arguments, problems), source, measured, channels)
 
 
 def read_source(arguments: argparse.Namespace, problems: list[str]) -> SpeedSource:
@@ -128,7 +121,7 @@ def read_source(arguments: argparse.Namespace, problems: list[str]) -> SpeedSour
     problems : list of str
         What is wrong is appended.
     """
-    channel, tacho, pulses, table = (getattr(arguments, name, None) for name in _OF_A_SPEED)
+    channel, tacho, pulses, table = (getattr(arguments, name, None) for name in OF_A_SPEED)
     try:
         count = 1.0 if pulses is None else float(pulses)
     except ValueError:
@@ -283,12 +276,8 @@ def recorded_data(arguments: argparse.Namespace, of_a_scene: tuple[str, ...]) ->
     InputError
         With every problem.
     """
-    problems = Problems(
-        f"--{name.replace('_', '-')}: stands beside {short(arguments.scene)}, a run that is recorded; allowed: with a "
-        "scene, which is simulated"
-        for name in of_a_scene
-        if getattr(arguments, name, None)
-    )
+    beside = f"stands beside {short(arguments.scene)}, a run that is recorded"
+    problems = Problems(out_of_place(arguments, of_a_scene, f"{beside}; allowed: with a scene, which is simulated"))
     look = read_look(arguments, problems)
     problems += signal_problems(arguments, [arguments.scene, *look.files], 1)
     problems.check()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import warnings
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -34,14 +35,16 @@ def read_band(arguments: argparse.Namespace, problems: list[str]) -> dict[str, A
     Parameters
     ----------
     arguments : argparse.Namespace
-        Arguments with `highest` and `window`.
+        Arguments, with `highest` and `window` where the command has them.
     problems : list of str
         What is wrong is appended.
     """
-    limits = (LOWEST_HIGHEST, HIGHEST_HIGHEST)
     found = {
-        "highest": read_option("--highest", arguments.highest, "Hz", limits, HERTZ, problems),
-        "window": read_option("--window", arguments.window, "s", (SHORTEST, LONGEST), MILLISECOND, problems),
+        name: read_option(f"--{name}", getattr(arguments, name, None), unit, limits, display, problems)
+        for name, unit, limits, display in (
+            ("highest", "Hz", (LOWEST_HIGHEST, HIGHEST_HIGHEST), HERTZ),
+            ("window", "s", (SHORTEST, LONGEST), MILLISECOND),
+        )
     }
     return {name: value for name, value in found.items() if value is not None}
 
@@ -189,6 +192,21 @@ def with_bands(arguments: argparse.Namespace, problems: list[str]) -> bool:
     if text not in (ALL, NUMERICS):
         problems.append(f"--bands: got {text!r:.40}; allowed: {ALL}, {NUMERICS}; a number of runs with campbell alone")
     return bool(text != NUMERICS)
+
+
+def out_of_place(arguments: argparse.Namespace, names: Iterable[str], words: str) -> list[str]:
+    """Problems of options that are given where they mean nothing.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Arguments of the command.
+    names : iterable of str
+        Options, by their attributes.
+    words : str
+        What is wrong, and what is allowed.
+    """
+    return [f"--{name.replace('_', '-')}: {words}" for name in names if getattr(arguments, name, None)]
 
 
 def read_option(

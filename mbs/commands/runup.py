@@ -23,9 +23,9 @@ from mbs.analyses.runup import RunUpResult, RunUps, runup_figure, runup_problems
 from mbs.analyses.soundness import Judged
 from mbs.analyses.step_error import StepCheck
 from mbs.commands.auto import analysed
-from mbs.commands.campbell_recorded import read_source, signal_problems
+from mbs.commands.campbell_recorded import OF_A_SPEED, read_source, signal_problems
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Looked, Told, read_option, write
+from mbs.commands.common import Looked, Told, out_of_place, read_band, read_option, write
 from mbs.output.files import described
 from mbs.output.model_text import heading, held_lines
 from mbs.output.result_text import drive_lines, energy_lines, signal_lines
@@ -33,9 +33,8 @@ from mbs.output.results import with_spectra
 from mbs.output.time_files import is_time_data, read_time_data, write_time_data
 from mbs.planning.question import in_time
 from mbs.planning.tolerance import Tolerated, asked_tolerance, several_problems, tolerated_run
-from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.scene.scene import Scene
-from mbs.settings import HIGHEST, HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
+from mbs.settings import HIGHEST
 from mbs.spectral.spectra import AmplitudeSpectrum
 from mbs.timedata.netcdf_file import signal_variables
 from mbs.timedata.records import TimeChannel, TimeData, TimeRecord
@@ -47,7 +46,6 @@ _LARGEST_SPEED = 1e6 / RPM.factor
 _OF_A_SCENE = (
     "law", "map", "structural_law", "films", "supply", "clearance", "auto", "physics", "tolerance",
 )  # fmt: skip
-_OF_A_SPEED = ("speed_channel", "tacho", "pulses", "speed_table")
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,11 +116,9 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
     problems = Problems()
     tolerance = asked_tolerance(arguments, problems)
     wanted = _read_spectra(arguments, problems)
-    problems += [
-        f"--{name.replace('_', '-')}: stands beside a scene, whose speed is known; allowed: with a recorded run"
-        for name in _OF_A_SPEED
-        if getattr(arguments, name, None)
-    ]
+    problems += out_of_place(
+        arguments, OF_A_SPEED, "stands beside a scene, whose speed is known; allowed: with a recorded run"
+    )
     try:
         cases = load_cases(arguments, needs=runup_problems)
     except InputError as error:
@@ -166,27 +162,16 @@ def _read_spectra(arguments: argparse.Namespace, problems: list[str]) -> _Spectr
     speeds = [read_option("--spectrum-at", text, "rad/s", limits, RPM, problems) for text in given]
     if len(given) > _MOST_SPECTRA:
         problems.append(f"--spectrum-at: got {len(given)} speeds; allowed: up to {_MOST_SPECTRA}")
-    window, highest = getattr(arguments, "window", None), getattr(arguments, "highest", None)
     if not given:
-        problems += [
-            f"--{name}: stands without --spectrum-at; allowed: with it"
-            for name, value in (("window", window), ("highest", highest))
-            if value is not None
-        ]
-    return _Spectra(
-        tuple(speed for speed in speeds if speed is not None),
-        read_option("--window", window, "s", (SHORTEST, LONGEST), MILLISECOND, problems),
-        read_option("--highest", highest, "Hz", (LOWEST_HIGHEST, HIGHEST_HIGHEST), HERTZ, problems),
-    )
+        problems += out_of_place(arguments, ("window", "highest"), "stands without --spectrum-at; allowed: with it")
+    band = read_band(arguments, problems)
+    return _Spectra(tuple(speed for speed in speeds if speed is not None), band.get("window"), band.get("highest"))
 
 
 def _recorded(arguments: argparse.Namespace) -> tuple[str, int]:
     """Look at the runs of a file, without simulating anything."""
-    problems = [
-        f"--{name.replace('_', '-')}: stands beside a run that is recorded; allowed: with a scene, which is simulated"
-        for name in _OF_A_SCENE
-        if getattr(arguments, name, None)
-    ]
+    words = "stands beside a run that is recorded; allowed: with a scene, which is simulated"
+    problems = out_of_place(arguments, _OF_A_SCENE, words)
     wanted, source = _read_spectra(arguments, problems), read_source(arguments, problems)
     read = [arguments.scene, *([source.table] if source.table else [])]
     problems += signal_problems(arguments, read, 1)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -12,7 +13,7 @@ import xarray as xr
 
 from ehdmaps.arrays import ComplexArray, FloatArray, variable
 from mbs.bearings.films import SIDES
-from mbs.bearings.thermal import BearingHeat, BearingState
+from mbs.bearings.thermal import BearingState
 from mbs.gears.gear import GearMesh
 from mbs.model.body import FREEDOMS
 from mbs.model.elements import Input, OnRings, Sensor
@@ -105,30 +106,23 @@ def with_spectra(
     return dataset.assign(found.data_vars).assign_coords(found.coords)
 
 
-_STATE: tuple[tuple[str, str, str, Callable[[BearingState], float]], ...] = (
-    ("inner_raceway_temperature", "K", "temperature of the inner raceway", lambda state: state.inner),
-    ("outer_raceway_temperature", "K", "temperature of the outer raceway", lambda state: state.outer),
-    ("operating_clearance", "m", "diametral clearance in operation", lambda state: state.clearance.operating),
+_STATE = (
+    ("inner_raceway_temperature", "K", "temperature of the inner raceway", "inner"),
+    ("outer_raceway_temperature", "K", "temperature of the outer raceway", "outer"),
+    ("operating_clearance", "m", "diametral clearance in operation", "clearance.operating"),
 )
-_CHANGES: tuple[tuple[str, str, str, Callable[[BearingState], float]], ...] = (
-    ("stated_clearance", "m", "diametral clearance at 20 degC, not mounted", lambda state: state.clearance.stated),
-    ("clearance_by_temperature", "m", "what expansion adds to it", lambda state: state.clearance.by_temperature),
-    ("clearance_by_fits", "m", "what the fits add to it", lambda state: state.clearance.by_fits),
+_CHANGES = (
+    ("stated_clearance", "m", "diametral clearance at 20 degC, not mounted", "clearance.stated"),
+    ("clearance_by_temperature", "m", "what expansion adds to it", "clearance.by_temperature"),
+    ("clearance_by_fits", "m", "what the fits add to it", "clearance.by_fits"),
 )
-
-
-def _heat(read: Callable[[BearingHeat], float]) -> Callable[[BearingState], float]:
-    """Read of the heat of a bearing; NaN where its temperatures are given."""
-    return lambda state: math.nan if state.heat is None else read(state.heat)
-
-
-_HEAT: tuple[tuple[str, str, str, Callable[[BearingState], float]], ...] = (
-    ("oil_temperature", "K", "temperature of the oil in the bearing", lambda state: state.oil),
-    ("friction_power", "W", "friction of the bearing", _heat(lambda heat: heat.friction)),
-    ("added_power", "W", "what of it the scene adds to the rolling", _heat(lambda heat: heat.added)),
-    ("heat_to_shaft", "W", "heat to the shaft", _heat(lambda heat: heat.to_shaft)),
-    ("heat_to_housing", "W", "heat to the housing", _heat(lambda heat: heat.to_housing)),
-    ("heat_to_oil", "W", "heat that the oil carries away", _heat(lambda heat: heat.to_oil)),
+_HEAT = (
+    ("oil_temperature", "K", "temperature of the oil in the bearing", "oil"),
+    ("friction_power", "W", "friction of the bearing", "heat.friction"),
+    ("added_power", "W", "what of it the scene adds to the rolling", "heat.added"),
+    ("heat_to_shaft", "W", "heat to the shaft", "heat.to_shaft"),
+    ("heat_to_housing", "W", "heat to the housing", "heat.to_housing"),
+    ("heat_to_oil", "W", "heat that the oil carries away", "heat.to_oil"),
 )
 
 _States = Sequence[BearingState] | Sequence[Any]
@@ -146,40 +140,25 @@ def with_states(dataset: xr.Dataset, states: _States, dims: tuple[str, ...] = ()
     dims : tuple of str
         Dims over which there are more of them, such as ("case", "speed").
     """
-    everything = list(_flat(states))
-    if not everything:
+    table = np.array(states, dtype=object)
+    if not table.size:
         return dataset
-    rows = _STATE
-    if any(abs(state.clearance.operating - state.clearance.stated) > 0.0 for state in everything):
+    rows, heated = list(_STATE), [state.heat is not None for state in table.flat]
+    if any(abs(state.clearance.operating - state.clearance.stated) > 0.0 for state in table.flat):
         rows += _CHANGES
-    if any(state.heat is not None for state in everything):
+    if any(heated):
         rows += _HEAT
-    first: Any = states
-    for _ in dims:
-        first = first[0]
-    names = np.array([state.name for state in first], dtype=np.str_)
-    variables = {
-        name: variable((*dims, "bearing"), np.array(_values(states, read)), unit, words)
-        for name, unit, words, read in rows
-    }
+    names = np.array([state.name for state in table.reshape(-1, table.shape[-1])[0]], dtype=np.str_)
+    variables = {}
+    for name, unit, words, path in rows:
+        known = heated if path.startswith("heat.") else [True] * table.size
+        read = attrgetter(path)
+        values = [read(state) if there else math.nan for state, there in zip(table.flat, known, strict=True)]
+        variables[name] = variable((*dims, "bearing"), np.reshape(values, table.shape), unit, words)
     added = xr.Dataset(variables, coords={"bearing": names})
     if "bearing" in dataset.coords:  # ball bearings have no states
         return dataset.assign(added.reindex(bearing=dataset["bearing"]).data_vars)
     return dataset.assign_coords(bearing=names).assign(added.data_vars)
-
-
-def _values(states: Any, read: Callable[[BearingState], float]) -> Any:
-    """A number of each state, nested as they are."""
-    return read(states) if isinstance(states, BearingState) else [_values(entry, read) for entry in states]
-
-
-def _flat(states: Any) -> Any:
-    """All states, one after the other."""
-    if isinstance(states, BearingState):
-        yield states
-    else:
-        for entry in states:
-            yield from _flat(entry)
 
 
 _ROUND_OFF = 1e-9
@@ -289,7 +268,6 @@ LEFT_OUT = "what the film law with memory leaves out, true less found, to first 
 """How datasets call the part of the film law; it is NaN where it is not known."""
 
 _KINDS = (("translation", "m", "displacement"), ("rotation", "rad", "rotation"), ("modal", "1", "modal amplitude"))
-_UNITS = {"m": "m", "rad": "rad", "1": "1"}
 _ORDERS = {"displacement": "", "velocity": "/s", "acceleration": "/s2"}
 
 

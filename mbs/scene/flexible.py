@@ -15,7 +15,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.inputs import read_text
 from ehdmaps.jobs import table
 from ehdmaps.jobs.table import Table
-from ehdmaps.units import LENGTH, Display, short
+from ehdmaps.units import LENGTH, short
 from mbs.flexible.plan import (
     AXES,
     FORMATS,
@@ -45,9 +45,6 @@ from mbs.scene.specs import HIGHEST_DAMPING_RATIO, ORIGIN, FlexibleSpec
 if TYPE_CHECKING:
     from mbs.flexible.reduced_body import ReducedBody
 
-
-_DENSITY = Display("kg/m^3")
-_INERTIA = Display("kg m^2")
 
 _SURFACES = ("nodes", "cylinder", "plane")
 _AXES: dict[str, Triple] = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
