@@ -37,4 +37,4 @@ figure = Figure(figsize=(7.0, 3.0), layout="constrained")
 for axes, name, display in zip(figure.subplots(1, 2), ("stiffness", "damping"), (SPRING, DAMPER), strict=True):
     axes.bar(list(found), [display.value(getattr(solution, name) * SLICE) for solution in found.values()])
     axes.set_ylabel(f"{name} of the slice, {display.unit}")
-write_figure(figure, Path(sys.argv[1] if len(sys.argv) > 1 else ".") / "01_one_contact.png", 120)
+write_figure(figure, Path(sys.argv[1] if len(sys.argv) > 1 else ".") / "01_one_contact.png")

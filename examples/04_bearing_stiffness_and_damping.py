@@ -37,4 +37,4 @@ for name, (law, films) in laws.items():
     assert name == "film" or np.allclose(exponent, 10 / 9, rtol=1e-8)  # what the equilibrium leaves of its load
 left.set(xlabel="load, N", ylabel="stiffness, N/um", title="dashed: dry")
 right.set(xlabel="load, N", ylabel="damping, N s/mm")
-write_figure(figure, Path(sys.argv[1] if len(sys.argv) > 1 else ".") / "04_bearing.png", 120)
+write_figure(figure, Path(sys.argv[1] if len(sys.argv) > 1 else ".") / "04_bearing.png")

@@ -37,4 +37,4 @@ image = axes.pcolormesh(rpm, found["frequency"], found["level"].T, vmin=top - 60
 axes.plot(rpm, passing * rpm / 60.0, "k--", linewidth=0.8)
 axes.set(xlabel="speed, rpm", ylabel="frequency, Hz")
 figure.colorbar(image, label="level, dB")
-write_figure(figure, Path(sys.argv[1] if len(sys.argv) > 1 else ".") / "06_campbell.png", 120)
+write_figure(figure, Path(sys.argv[1] if len(sys.argv) > 1 else ".") / "06_campbell.png")

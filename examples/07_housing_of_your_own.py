@@ -37,4 +37,4 @@ print(f"{free.size} to {frequency.size} freedoms; lowest {frequency[0]:.3f} Hz, 
 assert abs(frequency[0] / whole[0] - 1.0) < 1e-4  # what modes beyond the cut-off would add
 figure, axes = plt.subplots(subplot_kw={"xlabel": "mode", "ylabel": "error of the reduced frequency"})
 axes.semilogy(range(1, 13), np.abs(frequency[:12] / whole[:12] - 1.0), "o")
-write_figure(figure, FOLDER / "07_housing.png", 120)
+write_figure(figure, FOLDER / "07_housing.png")

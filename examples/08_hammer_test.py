@@ -38,4 +38,4 @@ for frequency in found.frequency:
     axes.axvline(frequency, color="k", linestyle="--", linewidth=0.8)
 axes.set(xlabel="frequency, Hz", ylabel="response over its largest value", xlim=(0.0, 3000.0))
 axes.legend()
-write_figure(figure, Path(sys.argv[1] if len(sys.argv) > 1 else ".") / "08_hammer.png", 120)
+write_figure(figure, Path(sys.argv[1] if len(sys.argv) > 1 else ".") / "08_hammer.png")

@@ -34,4 +34,4 @@ print(f"{model.scene.weight}: bearings carry {carried:.4f} N, by hand {7850.0 * 
 assert abs(carried / (7850.0 * volume * 9.80665) - 1.0) < 1e-8  # rounding of an equilibrium
 found = critical(model)
 print("critical speeds:", ", ".join(f"{entry.speed * 30.0 / math.pi:.0f} rpm" for entry in found.found))
-write_figure(found.plot(), Path(sys.argv[1] if len(sys.argv) > 1 else ".") / "09_rotor.png", 120)
+write_figure(found.plot(), Path(sys.argv[1] if len(sys.argv) > 1 else ".") / "09_rotor.png")

@@ -35,4 +35,4 @@ found = 2.0 * math.pi * np.sort(mbs.modes(model).dataset["frequency"].values)[:6
 print(f"whirl speeds at 4000 rpm: {found.round(2)} rad/s, of the book {BOOK} rad/s")
 assert np.abs(found - BOOK).max() < 0.01  # last digit of the book, rounded
 result = mbs.critical(model, mbs.SweepSettings(mbs.SweepRange(100.0 * RPM, 4000.0 * RPM, 14)))
-write_figure(result.plot(), Path(sys.argv[1] if len(sys.argv) > 1 else ".") / "10_rotor.png", 120)
+write_figure(result.plot(), Path(sys.argv[1] if len(sys.argv) > 1 else ".") / "10_rotor.png")

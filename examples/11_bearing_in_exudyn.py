@@ -47,4 +47,4 @@ figure, axes = plt.subplots(figsize=(7.0, 3.0), layout="constrained")
 for curve, style in zip(curves, ("C0", "k--"), strict=False):
     axes.plot(1e3 * t, 1e9 * curve, style)
 axes.set(xlabel="time, ms", ylabel="motion, nm", title="rotor after a push; dashed: Exudyn")
-write_figure(figure, Path(sys.argv[1] if len(sys.argv) > 1 else ".") / "11_exudyn.png", 120)
+write_figure(figure, Path(sys.argv[1] if len(sys.argv) > 1 else ".") / "11_exudyn.png")

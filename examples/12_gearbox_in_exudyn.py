@@ -45,4 +45,4 @@ if find_spec("exudyn"):
 axes.set(
     xlabel="frequency, kHz", ylabel="damping ratio", xlim=(0.5, 6.0), ylim=(0.0, 0.05), title="modes; crosses: Exudyn"
 )
-write_figure(figure, Path(sys.argv[1] if len(sys.argv) > 1 else ".") / "12_gearbox.png", 120)
+write_figure(figure, Path(sys.argv[1] if len(sys.argv) > 1 else ".") / "12_gearbox.png")

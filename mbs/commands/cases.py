@@ -302,7 +302,7 @@ def combinations(
         What is wrong is appended.
     """
     found = [Combination(subject if subjects[1:] else _with_label(subject)) for subject in subjects]
-    for choice in CHOICES.values():
+    for choice in CHOICES.values() if found else ():  # why there is no law is said already
         several = values.get(choice.name, ()) if choice.name not in LAWS else ()
         if choice.name == SUPPLY.name and not several:
             found = [dataclasses.replace(one, subject=_with_stated_supply(one.subject)) for one in found]

@@ -307,6 +307,7 @@ class TestCases:
             ({"law": ["herz"]}, "--law: got 'herz'"),
             ({"map": ["a.nc", "a.nc"]}, "--map: got 'a.nc' twice"),
             ({"map": ["nowhere.nc"]}, "--map: nowhere.nc: cannot be read"),
+            ({"map": ["nowhere.nc"], "films": ["memory"]}, "--map: nowhere.nc: cannot be read"),
             ({"clearance": ["20 kg"]}, "--clearance: "),
             ({"clearance": ["1 m"]}, "--clearance: got '1 m'; allowed: within"),
             ({"clearance": ["nan um"]}, "--clearance: "),
