@@ -64,6 +64,7 @@ def test_no_load_is_told_and_ends_with_status_one(capsys):
     ("more", "words"),
     [
         (["--length", "1 mm"], "--length: is one of line contacts"),
+        (["--supply", "2 um"], "--supply: stands beside films that are solved, or a frequency; allowed: --films table"),
         (["--films", "guessed"], "--films: got 'guessed'; allowed: solved, table"),
         (
             ["--films", "table", "--frequency", "90 kHz"],

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import ehdmaps
+from ehdmaps.jobs.solve.ball_points import read_point
 from ehdmaps.maps.points.layers import DAMPING, OFFSET
 from ehdmaps.maps.points.rough import SHARES, load_shares, shared_films
 from ehdmaps.maps.rough_layer import asperity_pressure, mean_gap
@@ -143,6 +144,18 @@ def test_heat_goes_before_the_layer():
     cold, hot = (films(dataclasses.replace(one, supply=layer)).inner.read(LOADS)[0] for one in (PLAIN, warm))
     np.testing.assert_allclose(hot[1], cold[1], rtol=1e-3)
     assert np.all(films(warm).inner.read(LOADS)[0][1] < films(PLAIN).inner.read(LOADS)[0][1])
+
+
+def test_one_point_is_that_of_the_law():
+    """`ehdmaps solve 6208 --films table --supply`: nine loads give k within 0.2 % of the law of a fine grid."""
+    contact, given = GEOMETRY.contacts(STEEL)[0], FilmConditions(True, OilSupply(0.5e-6))
+    at = ehdmaps.law("6208", OIL, "inner", supply=given.supply, inlet_heat=True).at(*AT)
+    for load in (30.0, 300.0):
+        found = read_point(contact, OIL, load, *AT, conditions=given)
+        approach, compliance, loss = at.static(np.array([load]))
+        assert float(found.approach) == pytest.approx(approach[0], rel=1e-4)
+        assert float(found.stiffness) * compliance[0] == pytest.approx(1.0, abs=2e-3)
+        assert float(found.damping) == pytest.approx(loss[0] / compliance[0] ** 2, rel=2e-3)
 
 
 def test_laws_of_balls_have_the_same_conditions():

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.choices import supply_from_text
 from ehdmaps.compiling import stopwatch
 from ehdmaps.errors import InputError, Problems
 from ehdmaps.jobs.balls import balls_of
@@ -26,10 +27,10 @@ from ehdmaps.jobs.solve.options import Options
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, heat_data
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
+from ehdmaps.physics.oil_supply import FLOODED, PLAIN, FilmConditions
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.point.ellipse import Ellipse
-from ehdmaps.physics.point.film_formulas import point_films
 from ehdmaps.physics.point.inlet_heat import heat_note
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import Estimate, Status
@@ -62,14 +63,17 @@ SOLVED, TABLE = "solved", "table"
 REYNOLDS, OPENFOAM = "reynolds", "openfoam"
 """What solves them."""
 
+_BESIDE = 0.1 * np.arange(-4.0, 5.0)
+"""ln of loads beside one, by which the stiffness of a film on a layer is known."""
+
 _FASTEST = 1e6 * math.pi / 30.0
-_OF_LINES = (*("length", "shear_stress", "slide_to_roll", "limiting_ratio", "supply", "shear"),)
+_OF_LINES = (*("length", "shear_stress", "slide_to_roll", "limiting_ratio", "shear"),)
 """Options of line contacts."""
 
 
 @dataclass(frozen=True)
 class _Request:
-    """Question: bearing, oil, load of a ball [N], speed [m/s], temperature [K], frequencies [Hz], films, heat, picture.
+    """Question: bearing, oil, load of a ball [N], speed [m/s], temperature [K], frequencies [Hz], films, picture.
 
     `cfd` is what solves them by OpenFOAM; None by `reynolds`.
     """
@@ -81,7 +85,7 @@ class _Request:
     temperature: float
     frequencies: FloatArray | None
     films: str
-    inlet_heat: bool
+    conditions: FilmConditions
     plot: Path | None
     cfd: CfdPoints | None
 
@@ -121,9 +125,9 @@ def _contact(request: _Request, name: str, ellipse: Ellipse) -> PointSolution:
             tell(said)
         return solution
     if request.films == TABLE:
-        return read_point(ellipse, *point, request.frequencies, request.inlet_heat)
+        return read_point(ellipse, *point, request.frequencies, request.conditions)
     solution = solve(ellipse, *point, request.frequencies)
-    return heated_solution(solution, request.oil) if request.inlet_heat else solution
+    return heated_solution(solution, request.oil) if request.conditions.inlet_heat else solution
 
 
 def read_point(
@@ -133,7 +137,7 @@ def read_point(
     speed: float,
     temperature: float,
     frequencies: FloatArray | None = None,
-    inlet_heat: bool = False,
+    conditions: FilmConditions = PLAIN,
 ) -> PointSolution:
     """A point as the table of points has it, with the words of a solution.
 
@@ -147,8 +151,8 @@ def read_point(
         F [N], u [m/s], T [K].
     frequencies : ndarray, optional
         Frequencies of the response [Hz].
-    inlet_heat : bool
-        Whether heat in the inlet thins the films, by its rule.
+    conditions : FilmConditions
+        Heat in the inlet, oil supply and surfaces; the response over frequency has heat alone.
 
     Raises
     ------
@@ -160,10 +164,16 @@ def read_point(
     from ehdmaps.table.points.response import read_response
 
     seconds = stopwatch()
-    films = shipped_point_table().films(ellipse, oil, [load], speed, temperature, inlet_heat)
-    numbers = {name: Estimate(float(getattr(films, name)[0]), float(films.errors[name][0])) for name in KNOWN}
+    loads = np.array([load]) if conditions.plain else load * np.exp(_BESIDE)
+    at, heat = loads.size // 2, conditions.inlet_heat
+    films = shipped_point_table().films(ellipse, oil, loads, speed, temperature, heat)
+    if not conditions.plain and np.all(films.usable) and speed > 0.0:
+        from ehdmaps.maps.points.layers import PointPlace, films_under
+
+        films = films_under(PointPlace(ellipse, oil, speed, temperature), conditions, loads, films)
+    numbers = {name: Estimate(float(getattr(films, name)[at]), float(films.errors[name][at])) for name in KNOWN}
     response = None
-    if frequencies is not None and films.usable[0]:
+    if frequencies is not None and films.usable[at]:
         found = read_response(films, frequencies)
         if not np.all(np.isfinite(found.stiffness)):
             highest = float(films.frequencies[0, -1])
@@ -173,16 +183,16 @@ def read_point(
             )
         dynamic = found.stiffness + 2j * math.pi * frequencies * found.damping
         response = PointResponse(frequencies, dynamic, found.stiffness_error, found.damping_error)
-    note = heat_note(ellipse, oil, load, speed, temperature) if inlet_heat and films.usable[0] else ""
+    note = heat_note(ellipse, oil, load, speed, temperature) if conditions.inlet_heat and films.usable[at] else ""
     return PointSolution(
-        Status(int(films.status[0])),
-        "; ".join(filter(None, (str(films.reason[0]), note))),
+        Status(int(films.status[at])),
+        "; ".join(filter(None, (str(films.reason[at]), note))),
         *(load, speed, temperature, ellipse),
-        load_number=float(films.load_number[0]),
-        oil_number=float(films.oil_number[0]),
+        load_number=float(films.load_number[at]),
+        oil_number=float(films.oil_number[at]),
         **numbers,  # type: ignore[arg-type]
         solve_seconds=seconds(),
-        viscosity_extrapolated=bool(films.viscosity_extrapolated[0]),
+        viscosity_extrapolated=bool(films.viscosity_extrapolated[at]),
         response=response,
     )
 
@@ -222,6 +232,12 @@ def _read(arguments: argparse.Namespace) -> _Request:
     if films == TABLE and arguments.plot is not None:
         problems.append(f"--plot: stands beside --films {TABLE}, which has no field; allowed: --films {SOLVED}")
     problems += output_problems([Output("--plot", arguments.plot, FIGURE)])
+    supply = FLOODED
+    if arguments.supply is not None:
+        with problems.after("--supply: "):
+            supply = supply_from_text(arguments.supply)
+        if films != TABLE or frequencies is not None:
+            problems.append(f"--supply: stands beside films that are solved, or a frequency; allowed: --films {TABLE}")
     physics = _physics(arguments, oil, problems)
     cfd = None
     if by_cfd:
@@ -232,8 +248,8 @@ def _read(arguments: argparse.Namespace) -> _Request:
     if problems or bearing is None or oil is None:
         raise InputError(problems)
     plot = None if arguments.plot is None else Path(arguments.plot)
-    heat = physics == INLET_HEAT
-    return _Request(bearing, oil, load, speed, temperature, frequencies, films, heat, plot, cfd)
+    conditions = FilmConditions(physics == INLET_HEAT, supply)
+    return _Request(bearing, oil, load, speed, temperature, frequencies, films, conditions, plot, cfd)
 
 
 def _physics(arguments: argparse.Namespace, oil: Lubricant | None, problems: Problems) -> str:
@@ -280,7 +296,7 @@ def _heading(request: _Request) -> str:
     """Bearing, oil and point in words."""
     by = "" if request.cfd is None else ", OpenFOAM"
     place = f"{FORCE.text(request.load)} a ball, {SPEED.text(request.speed)}, {TEMPERATURE.text(request.temperature)}"
-    return f"{request.bearing.title}, {request.oil.title}{by}, {point_films(request.inlet_heat)}: {place}"
+    return f"{request.bearing.title}, {request.oil.title}{by}, {request.conditions.words}: {place}"
 
 
 def _record(request: _Request, name: str, solution: PointSolution) -> dict[str, Any]:
@@ -300,7 +316,7 @@ def _record(request: _Request, name: str, solution: PointSolution) -> dict[str, 
         "steps": solution.steps,
         "solve_seconds": solution.solve_seconds,
         "viscosity_extrapolated": solution.viscosity_extrapolated,
-        "films": point_films(request.inlet_heat),
+        "films": request.conditions.words,
         "status": solution.status.word,
         "reason": solution.reason,
     }

@@ -12,7 +12,7 @@ and so do 1/k and c/k^2.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -22,6 +22,7 @@ from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, MapError, OutsideMapError
+from ehdmaps.maps.points.layers import PointPlace, films_under
 from ehdmaps.physics.heat import heat_data
 from ehdmaps.physics.hertz import POINT_LIMIT
 from ehdmaps.physics.lubricant import Lubricant
@@ -230,41 +231,19 @@ class PointLaw:
                 f"contact law of a ball: {entrainment_speed:.4g} m/s, {temperature:.5g} K: {'; '.join(sorted(reasons))}"
             )
         kept = loads[first:]
-        films = tuple(self._under(one, kept, films_at(one, self.lubricant, kept, *at), at) for one in self.contacts)
+        films = tuple(
+            films_under(
+                PointPlace(one, self.lubricant, *at[:2]),
+                self.conditions,
+                kept,
+                films_at(one, self.lubricant, kept, *at),
+            )
+            for one in self.contacts
+        )
         found = PointLawAt(kept, films, self.contacts)
         if not np.all(np.diff(found.static(kept)[0]) > 0.0):
             raise MapError("contact law of a ball: the approach falls with the load; take another speed or temperature")
         return found
-
-    def _under(
-        self, contact: Ellipse, loads: FloatArray, films: PointFilms, at: tuple[float, float, bool]
-    ) -> PointFilms:
-        """Films with what oil supply and surfaces make of offset, damping and films; their errors are added."""
-        if self.conditions.plain:
-            return films
-        from ehdmaps.maps.points.layers import LAYERED, OFFSET, PointPlace, layered_films, on_layer
-
-        place = PointPlace(contact, self.lubricant, *at[:2])
-        flooded = np.column_stack([getattr(films, name) for name in LAYERED])
-        found = layered_films(place, self.conditions, loads, flooded)
-        changed = dict(zip(LAYERED, found.values.T, strict=True))
-        slope = CubicSpline(np.log(loads), changed["film_offset"])(np.log(loads), 1) / loads
-        dry = 1.0 / np.asarray(contact.stiffness(loads))
-        errors = dict(films.errors)
-        if not self.conditions.supply.flooded:
-            for name, more in zip(
-                LAYERED, on_layer(place, self.conditions.supply, loads, flooded).errors.T, strict=True
-            ):
-                errors[name] = errors[name] + more
-        return replace(
-            films,
-            **changed,
-            approach=films.approach + flooded[:, OFFSET] - changed["film_offset"],
-            stiffness=1.0 / (dry - slope),
-            film_compliance=-slope,
-            loss_compliance=changed["damping"] * (dry - slope) ** 2,
-            errors=errors,
-        )
 
     def __call__(
         self,

@@ -7,7 +7,8 @@ is that of the flooded contact; of the film between asperities the loss complian
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -19,6 +20,9 @@ from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.point.inlet_heat import line_number
 from ehdmaps.physics.point.oil_layer import Layered, layered
 from ehdmaps.physics.surface import Surface
+
+if TYPE_CHECKING:
+    from ehdmaps.table.points.films import PointFilms
 
 PER_DECADE = 40
 """Loads in a decade."""
@@ -138,3 +142,38 @@ def _rough(place: PointPlace, surface: Surface, loads: FloatArray, values: Float
     )
     damping = values[:, DAMPING] * (np.maximum(share, _LEAST_SHARE) * smooth / rough) ** 2
     return LayeredFilms(loads, np.column_stack([distance, values[:, CENTRAL], values[:, SMALLEST], damping]), share)
+
+
+def films_under(place: PointPlace, conditions: FilmConditions, loads: FloatArray, films: PointFilms) -> PointFilms:
+    """Films of the table of points with what oil supply and surfaces make of them; their errors are added.
+
+    Parameters
+    ----------
+    place : PointPlace
+        The contact.
+    conditions : FilmConditions
+        Oil supply and surfaces; heat is in the films already.
+    loads : ndarray, shape (n,)
+        Loads, rising and near to each other [N].
+    films : PointFilms
+        Films there, all usable, arrays (n,). Their response over frequency stays that of flooded, smooth contacts.
+    """
+    if conditions.plain:
+        return films
+    flooded = np.column_stack([getattr(films, name) for name in LAYERED])
+    found = layered_films(place, conditions, loads, flooded)
+    changed = dict(zip(LAYERED, found.values.T, strict=True))
+    slope = CubicSpline(np.log(loads), changed["film_offset"])(np.log(loads), 1) / loads
+    dry, errors = 1.0 / np.asarray(place.ellipse.stiffness(loads)), dict(films.errors)
+    if not conditions.supply.flooded:
+        added = on_layer(place, conditions.supply, loads, flooded).errors.T
+        errors |= {name: errors[name] + more for name, more in zip(LAYERED, added, strict=True)}
+    return replace(
+        films,
+        **changed,
+        approach=films.approach + flooded[:, OFFSET] - changed["film_offset"],
+        stiffness=1.0 / (dry - slope),
+        film_compliance=-slope,
+        loss_compliance=changed["damping"] * (dry - slope) ** 2,
+        errors=errors,
+    )

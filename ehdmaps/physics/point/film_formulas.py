@@ -71,21 +71,6 @@ def kapitza_film(load_number: float, curvature_ratio: float) -> float:
     return 2.0 / curvature_ratio * (6.0 * math.pi / ((3.0 + 2.0 * curvature_ratio) * load_number)) ** 2
 
 
-POINT_FILMS = "isothermal, flooded"
-"""Assumptions of films of balls, those of the table and those that are solved, too: printed beside them."""
-
-
-def point_films(inlet_heat: bool) -> str:
-    """Assumptions of films of balls, in words.
-
-    Parameters
-    ----------
-    inlet_heat : bool
-        Whether heat in the inlet thins them.
-    """
-    return "inlet heat, flooded" if inlet_heat else POINT_FILMS
-
-
 def film_of(
     formula: Callable[..., FloatArray],
     ellipse: Ellipse,
