@@ -130,9 +130,15 @@ class LsaResult:
             found = with_bounds(found.assign({name: ("peak", own.value, attributes)}), name, own)
         return found
 
-    def plot(self) -> Figure:
-        """Figure that `mbs lsa --plot` writes: magnitude and phase of the responses."""
-        return lsa_figure([self.model.label], [self])
+    def plot(self, banded: bool = False) -> Figure:
+        """Figure that `mbs lsa --plot` writes: magnitude and phase of the responses.
+
+        Parameters
+        ----------
+        banded : bool
+            Whether peaks have what is not known of them.
+        """
+        return lsa_figure([self.model.label], [self], banded)
 
 
 def lsa_problems(scene: Scene) -> list[str]:
@@ -321,7 +327,7 @@ def lsa_dataset(labels: Sequence[str], results: Sequence[LsaResult]) -> xr.Datas
     return joined
 
 
-def lsa_figure(labels: Sequence[str], results: Sequence[LsaResult]) -> Figure:
+def lsa_figure(labels: Sequence[str], results: Sequence[LsaResult], banded: bool = False) -> Figure:
     """Figure of the responses of one case, or of several side by side.
 
     Parameters
@@ -330,6 +336,8 @@ def lsa_figure(labels: Sequence[str], results: Sequence[LsaResult]) -> Figure:
         What each case is called.
     results : sequence of LsaResult
         One a case.
+    banded : bool
+        Whether peaks have what is not known of them.
     """
     from mbs.output.response_plot import Curves, comparison_figure, response_figure
 
@@ -341,6 +349,7 @@ def lsa_figure(labels: Sequence[str], results: Sequence[LsaResult]) -> Figure:
             min((error.frequency for error in entry.errors), default=math.inf),
             entry.level_error,
             entry.pitch_range,
+            entry.bands if banded else None,
         )
         for label, entry in zip(labels, results, strict=True)
     ]

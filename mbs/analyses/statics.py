@@ -69,13 +69,17 @@ class StaticsResult:
     @cached_property
     def bands(self) -> dict[str, Band]:
         """Bands of what is not known, by the names of variables of the data set; found when they are asked for."""
+        from mbs.linearised.bands import law_bands
         from mbs.unknowns.held_open import held_open_of
         from mbs.unknowns.of_variables import variable_bands
 
         def make(scene: Scene, standing: bool) -> dict[str, FloatArray]:
             return banded_variables(statics(self.model.again(scene), self.balance.operation).dataset)
 
-        return variable_bands(make, banded_variables(self.dataset), held_open_of(self.model))
+        laws = law_bands(self.balance)
+        both = () if laws is None else laws.of_matrices()
+        numerics = dict(zip(("bearing_stiffness", "bearing_damping"), both, strict=False))
+        return variable_bands(make, banded_variables(self.dataset), held_open_of(self.model), numerics)
 
     def bounded(self) -> xr.Dataset:
         """The data set with these bounds."""
@@ -83,11 +87,20 @@ class StaticsResult:
 
         return bounded(self.dataset, self.bands)
 
-    def plot(self) -> Figure:
-        """Figure that `mbs statics --plot` writes: loads of the rollers and slices of each bearing."""
+    def plot(self, banded: bool = False) -> Figure:
+        """Figure that `mbs statics --plot` writes: loads of the rollers and slices of each bearing.
+
+        Parameters
+        ----------
+        banded : bool
+            Whether it says what is not known of loads, pressures and films.
+        """
+        from mbs.output.band_text import contact_notes
         from mbs.output.bearing_plot import statics_figure
 
-        return statics_figure(self.model, self.balance, self.contacts, warned(self.findings))
+        names = [str(name) for name in self.dataset["bearing"].values]
+        notes = contact_notes(names, self.bands) if banded else []
+        return statics_figure(self.model, self.balance, self.contacts, [*warned(self.findings), *notes])
 
 
 BANDED = (

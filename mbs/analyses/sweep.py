@@ -122,8 +122,14 @@ class SweepResult:
             found = with_sides(found, f"complex_{name}", np.maximum(value * (1.0 - fall), 0.0), value * (1.0 + rise))
         return found
 
-    def plot(self) -> Figure:
-        """Figure that `mbs sweep --plot` writes: modes, bearings and responses over speed, what is not valid marked."""
+    def plot(self, banded: bool = False) -> Figure:
+        """Figure that `mbs sweep --plot` writes: modes, bearings and responses over speed, what is not valid marked.
+
+        Parameters
+        ----------
+        banded : bool
+            Whether what is not known of complex modes is shaded.
+        """
         from mbs.output.sweep_plot import sweep_figure
 
         cases, found = self.cases, self.sweeps
@@ -150,6 +156,7 @@ class SweepResult:
             ],
             max((fade.speed for fade in fades), default=0.0),
             [case.model.memory == "memory" for case in cases],
+            self.bands if banded else (),
         )
 
     def waterfall(self) -> Figure:
@@ -550,7 +557,7 @@ def dataset_of_laws(labels: Sequence[str], results: Sequence[CriticalResult]) ->
     return joined.assign_attrs({**parts[0].attrs, **laws_attributes(labels, [result.model for result in results])})
 
 
-def critical_plot(labels: Sequence[str], results: Sequence[CriticalResult]) -> Figure:
+def critical_plot(labels: Sequence[str], results: Sequence[CriticalResult], banded: bool = False) -> Figure:
     """Figure of critical speeds and responses, of one law or several.
 
     Parameters
@@ -559,13 +566,22 @@ def critical_plot(labels: Sequence[str], results: Sequence[CriticalResult]) -> F
         What each law is called.
     results : sequence of CriticalResult
         One a law.
+    banded : bool
+        Whether critical speeds have what is not known of them.
     """
     from mbs.output.sweep_plot import CriticalCurves, critical_figure
 
     return critical_figure(
         [
             CriticalCurves(
-                label, entry.model, entry.sweep, entry.found, entry.speeds, entry.responses, orders(entry.model.system)
+                label,
+                entry.model,
+                entry.sweep,
+                entry.found,
+                entry.speeds,
+                entry.responses,
+                orders(entry.model.system),
+                entry.bounds if banded else None,
             )
             for label, entry in zip(labels, results, strict=True)
         ]

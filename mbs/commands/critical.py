@@ -64,7 +64,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         lines += _beside(found)
     labels, results = [label for label, _ in found], [entry for _, entry in found]
     banded = banded and not found[1:]
-    figure = critical_plot(labels, results) if arguments.plot else None
+    figure = critical_plot(labels, results, banded) if arguments.plot else None
     dataset = results[0].bounded() if banded else dataset_of_laws(labels, results)
     lines += judged.last + outside + write(arguments, judged.marked(dataset), figure)
     return "\n".join(lines), 1 if outside or judged.status else 0

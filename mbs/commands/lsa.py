@@ -56,9 +56,9 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     )
     found = done.result
     labels, results = [label for label, _ in found], [entry for _, entry in found]
-    figure = lsa_figure(labels, results) if arguments.plot else None
     judged = Judged([(label, entry.findings) for label, entry in found])
     banded = banded and not found[1:] and results[0].model.scene.has_bearings
+    figure = lsa_figure(labels, results, banded) if arguments.plot else None
     lines = [*judged.first, *done.lines]
     outside: list[str] = []
     for label, entry in found:

@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     model = found.model
     balance, contacts = found.balance, found.contacts
     bands = found.bands if with_bands(arguments, []) and model.scene.has_bearings else {}
-    figure = found.plot() if arguments.plot else None
+    figure = found.plot(bool(bands)) if arguments.plot else None
     judged = Judged([("", found.findings)])
     lines = [
         *judged.first,

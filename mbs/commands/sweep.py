@@ -87,7 +87,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *_film_errors(case.model, entry),
             *fade_lines(case.model, entry.speeds),
         ]
-    figure = result.plot() if arguments.plot else None
+    figure = result.plot(banded) if arguments.plot else None
     lines += judged.last + outside + write(arguments, result.bounded() if banded else result.dataset, figure)
     if arguments.waterfall:
         lines += write_plot(result.waterfall(), arguments.waterfall)

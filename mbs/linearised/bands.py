@@ -249,6 +249,20 @@ class LawBands:
             bands.append(np.abs([dk @ motion, dc @ motion + follows]).sum(axis=1).tolist())
         return np.array(bands).reshape(-1, 2).T
 
+    def of_matrices(self) -> FloatArray:
+        """Bands of K and C [SI] of each bearing on its inner ring, either way, shape (2, bearings, 6, 6)."""
+        balance, bands = self._balance, []
+        condensed = {one.element: one.condensed for one in self.bearings}
+        for index in balance.system.select(OnRings):
+            stiffness, damping = balance.element_stiffness[index], balance.element_damping[index]
+            following = ring_following(stiffness)
+            by_stiffness, by_damping = condensed[index].changes_of_slow_motion
+            moved = [np.array([_moved(stiffness, column) for column in (one @ following).T]).T for one in by_stiffness]
+            follows = np.array([one.T @ damping @ following for one in moved])
+            both = following.T @ by_damping @ following + follows + np.swapaxes(follows, -1, -2)
+            bands.append(np.abs([following.T @ by_stiffness @ following, both]).sum(axis=1))
+        return np.swapaxes(np.array(bands).reshape(-1, 2, 6, 6), 0, 1)
+
 
 def law_bands(balance: Equilibrium) -> LawBands | None:
     """Find what errors of the laws of a system may change; None where a bearing states no errors, or none has films.

@@ -244,14 +244,16 @@ def quantity_lines(quantities: Sequence[Quantity]) -> list[str]:
     if not there:
         return []
     wide = max(len(one.of) for one in there)
-    lines = [f"  {'':{wide}s}  {'':20s} {'value':>9s}   {HEAD:26s}  {DECIDED}"]
+    lines = [f"  {'':{wide}s}  {'':20s} {'value':>9s}   {HEAD:26s}  numerics   {DECIDED}"]
     for last, one in zip([None, *there], there, strict=False):
         of = "" if last is not None and last.of == one.of else one.of
         band = one.band.of(None)
         lines.append(
             f"  {of:{wide}s}  {f'{one.name}, {one.unit}':20s} {value_text(band, 0):>9s}   {bounds_text(band, 0):26s}  "
-            f"{exact_text(band, 0)}"
+            f"{deserved(size := float(band.numerics[0]), size):9s}  {exact_text(band, 0)}"
         )
+    if any(not np.isfinite(one.band.numerics) for one in there):
+        lines.append("  numerics -: no errors of pressures, films and loads are stated, nor any by a law without a map")
     return lines
 
 
@@ -277,6 +279,21 @@ def bearing_quantities(names: Sequence[str], bands: Mapping[str, Band]) -> Itera
                 yield Quantity(name, words, shown.unit, bands[variable].of((index, worst)).scaled(shown.factor))
         if "highest_raceway_load" in bands:
             yield Quantity(name, "highest load", "N", bands["highest_raceway_load"].of(index))
+
+
+def contact_notes(names: Sequence[str], bands: Mapping[str, Band]) -> list[str]:
+    """A line for each bearing on what its highest load, pressure and smallest film may be, for figures.
+
+    Parameters
+    ----------
+    names, bands
+        The same as of `bearing_quantities`.
+    """
+    words: dict[str, list[str]] = {}
+    for one in bearing_quantities(names, bands):
+        if one.name[1:2] != " " and np.isfinite(one.band.value):  # no matrix
+            words.setdefault(one.of, []).append(f"{one.name} {bounds_text(one.band.of(None), 0)} {one.unit}")
+    return [f"{name}, {HEAD}: {', '.join(told)}" for name, told in words.items()]
 
 
 def share_words(found: Modes, mode: int) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,8 +16,12 @@ from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.figures import COLOURS, typeset
 from ehdmaps.units import RPM, written
 from mbs.linearised.linear import response_display
+from mbs.output.band_text import HEAD
 from mbs.output.page import BAND_ALPHA, BAND_WORDS, ESTIMATED, grid, headed, page, shade
 from mbs.scene.assembly import Model
+
+if TYPE_CHECKING:
+    from mbs.unknowns.of_peaks import PeakBands
 
 MOST_COMPARED = 8
 """Responses that are drawn for several cases."""
@@ -44,6 +49,8 @@ class Curves:
         Bands of the levels, either way [dB]; none are drawn without.
     pitch_range : array, shape (2, frequencies, sensors, inputs), optional
         Least and largest size at each angle of the cage; drawn as thin lines.
+    peaks : PeakBands, optional
+        What is not known of peaks; drawn as crosses.
     """
 
     label: str
@@ -52,6 +59,7 @@ class Curves:
     limit: float = math.inf
     level_error: FloatArray | None = None
     pitch_range: FloatArray | None = None
+    peaks: PeakBands | None = None
 
 
 def response_figure(model: Model, case: Curves, notes: Sequence[str] = ()) -> Figure:
@@ -149,6 +157,13 @@ def _magnitude(panel: Axes, case: Curves, pair: tuple[int, int], unit: float, **
         for edge in unit * case.pitch_range[:, :, pair[0], pair[1]]:
             seen = np.where(edge > 0.0, edge, np.nan)
             panel.loglog(case.frequencies, seen, lw=0.5, ls=":", color=style["color"])
+    if case.peaks is not None:
+        of = np.flatnonzero(np.all(case.peaks.places[:, 1:] == pair, axis=1))
+        at, level = case.peaks.frequency.of(of), case.peaks.level.of(of)
+        high = size[case.peaks.places[of, 0]]
+        falls, rises = (high * np.abs(1.0 - 10.0 ** (part / 20.0)) for part in (-level.fall, level.rise))
+        reach = {"xerr": (at.fall, at.rise), "yerr": (falls, rises)}
+        panel.errorbar(at.value, high, **reach, fmt="none", ecolor=style["color"], elinewidth=0.8, capsize=2.0)
     if case.level_error is not None:
         factor = 10.0 ** (case.level_error[:, pair[0], pair[1]] / 20.0)
         panel.fill_between(
@@ -159,8 +174,9 @@ def _magnitude(panel: Axes, case: Curves, pair: tuple[int, int], unit: float, **
 def _band_note(cases: Sequence[Curves]) -> list[str]:
     """Note on what the shade about the curves is; nothing where no case has one."""
     shaded = [f"shaded: {BAND_WORDS}"] if any(case.level_error is not None for case in cases) else []
+    crosses = [f"crosses at peaks: {HEAD}"] if any(case.peaks is not None for case in cases) else []
     dotted = ["dotted: least and largest size over the angles of the cage"]
-    return shaded + (dotted if any(case.pitch_range is not None for case in cases) else [])
+    return shaded + crosses + (dotted if any(case.pitch_range is not None for case in cases) else [])
 
 
 def _phase(frequencies: FloatArray, response: ComplexArray) -> tuple[FloatArray, FloatArray]:

@@ -7,6 +7,7 @@ import math
 import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -21,6 +22,7 @@ from ehdmaps.units import DAMPER, RPM, SPRING, written
 from mbs.linearised.critical import CriticalSpeed, OrderResponse
 from mbs.linearised.linear import response_display
 from mbs.linearised.sweep_result import Sweep, UndampedSweep
+from mbs.output.band_text import HEAD
 from mbs.output.page import (
     BAND_ALPHA,
     BAND_WORDS,
@@ -36,12 +38,18 @@ from mbs.output.sweep_data import orbits
 from mbs.scene.assembly import Model
 from mbs.scene.fields import MICROMETRE
 
+if TYPE_CHECKING:
+    from mbs.unknowns.over_speed import SpeedBands
+
 _LEAST_SHARE = 0.05
 _MAPS_IN_A_ROW = 4
 _MARKS = 16
 _LEVELS_SHOWN = 50.0
 _NOTHING = 1e-4
 _DASHES = ("-", "--", "-.", ":", (0, (6.0, 1.0, 1.0, 1.0, 1.0, 1.0)), (0, (1.0, 4.0)))
+_LEAST_UNKNOWN = 0.05
+"""Strain energy in the bearings from which on what is not known of a complex mode is shaded."""
+
 _LIMIT = (0.0, (5.0, 1.5, 1.0, 1.5))
 """Dashes of the frequency from which on the films are notably wrong."""
 
@@ -74,6 +82,7 @@ def sweep_figure(
     limits: Sequence[FloatArray] = (),
     below: float = 0.0,
     relaxing: Sequence[bool] = (),
+    bands: Sequence[SpeedBands] = (),
 ) -> Figure:
     """Modes, bearings and the response of the first sensor to the first input over speed, a colour a case.
 
@@ -92,6 +101,8 @@ def sweep_figure(
     relaxing : sequence of bool
         Which sweeps have films that relax; changes and damping ratios of these are shown of complex modes, because
         undamped ones see films of slow motion.
+    bands : sequence of SpeedBands
+        What is not known of the complex modes of each sweep, shaded; nothing is without.
     """
     relaxing = relaxing or [False] * len(sweeps)
     limits = limits or [np.full(entry.speeds.size, np.nan) for entry in sweeps]
@@ -108,6 +119,8 @@ def sweep_figure(
         _bearings(middle[1:], entry, colour)
         top[0].plot(entry.speeds * RPM.factor, limits[index], color=colour, lw=1.2, ls=_LIMIT)
         handles.append(Line2D([], [], color=colour, lw=1.6, label=typeset(label)))
+    for entry, own, colour in zip(sweeps, bands, COLOURS, strict=False):
+        _unknown((top[0], middle[0]), entry, own, colour)
     _axes(top[0], "frequency, Hz", "log")
     _axes(top[1], "change of frequency, %" if any(relaxing) else "change of undamped frequency, %")
     _axes(middle[0], "damping ratio, %", "log")
@@ -132,6 +145,8 @@ def sweep_figure(
         Line2D([], [], color="0.3", lw=0, marker="o", ms=3.2, mfc="white", label="complex, with gyroscopic terms"),
         Line2D([], [], color="0.75", lw=0.7, label="undamped, less than 5 % there"),
     ]
+    if bands:
+        styles.append(Patch(color="0.3", alpha=BAND_ALPHA, lw=0.0, label=f"complex, {HEAD}"))
     if any(relaxing):
         styles.append(
             Line2D(
@@ -384,6 +399,8 @@ class CriticalCurves:
         Response to the loads of each order; a panel each.
     orders : sequence of float
         Orders whose lines are drawn.
+    bounds : array, shape (critical, 4), optional
+        Low and high speed [rad/s] of each critical one, drawn as a bar.
     """
 
     label: str
@@ -393,6 +410,7 @@ class CriticalCurves:
     speeds: FloatArray
     responses: Sequence[OrderResponse]
     orders: Sequence[float]
+    bounds: FloatArray | None = None
 
 
 def critical_figure(laws: Sequence[CriticalCurves]) -> Figure:
@@ -428,11 +446,26 @@ def critical_figure(laws: Sequence[CriticalCurves]) -> Figure:
     return figure
 
 
+def _unknown(panels: tuple[Axes, Axes], entry: Sweep, bands: SpeedBands, colour: str) -> None:
+    """Shade what is not known of frequencies and damping ratios of complex modes with strain energy in the bearings."""
+    damped = entry.damped
+    shares = np.nanmax(damped.bearing_share, axis=0, initial=0.0)
+    values = ((damped.frequency, bands.frequency), (100.0 * damped.damping_ratio, bands.damping_ratio))
+    for panel, (value, (fall, rise)) in zip(panels, values, strict=True):
+        for k in np.flatnonzero(shares >= _LEAST_UNKNOWN):
+            low, high = value[:, k] * (1.0 - np.minimum(fall[:, k], 1.0)), value[:, k] * (1.0 + rise[:, k])
+            panel.fill_between(entry.speeds * RPM.factor, low, high, color=colour, alpha=BAND_ALPHA, lw=0.0, zorder=1.0)
+
+
 def _damped_modes(panel: Axes, law: CriticalCurves, colour: str, marked: str) -> None:
     """Damped modes over speed, and the critical speeds."""
     frequencies = law.sweep.damped.eigenvalues.imag / (2.0 * np.pi)
     panel.plot(law.sweep.speeds * RPM.factor, frequencies, color=colour, lw=1.0)
-    for entry in law.found:
+    for index, entry in enumerate(law.found):
+        if law.bounds is not None and np.all(np.isfinite(law.bounds[index, :2])):
+            reach = np.abs(law.bounds[index, :2, None] - entry.speed) * RPM.factor
+            at = entry.speed * RPM.factor, entry.eigenvalue.imag / (2.0 * np.pi)
+            panel.errorbar(*at, xerr=reach, fmt="none", ecolor=marked, elinewidth=1.2, capsize=3.0)
         marker = "o" if math.isnan(entry.whirl) else "^" if entry.whirl > 0.0 else "v"
         panel.plot(entry.speed * RPM.factor, entry.eigenvalue.imag / (2.0 * np.pi), marker, color=marked, ms=6)
 
@@ -451,7 +484,8 @@ def _lines(panel: Axes, law: CriticalCurves) -> None:
         ylim=(0.0, _ROOM * max(law.orders) * float(speeds[-1]) / (2.0 * np.pi)),
     )
     panel.set_title(
-        "triangles: critical speeds, upwards with the spin, downwards against it; circles: along or about the axis",
+        "triangles: critical speeds, upwards with the spin, downwards against it; circles: along or about the axis"
+        + (f"; bars: {HEAD}" if law.bounds is not None else ""),
         fontsize=8,
         loc="left",
     )

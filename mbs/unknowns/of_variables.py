@@ -23,7 +23,10 @@ Variables = Mapping[str, FloatArray]
 
 
 def variable_bands(
-    make: Callable[[Scene, bool], Variables], centre: Variables, unknowns: Sequence[Unknown]
+    make: Callable[[Scene, bool], Variables],
+    centre: Variables,
+    unknowns: Sequence[Unknown],
+    numerics: Variables | None = None,
 ) -> dict[str, Band]:
     """Find the bands of variables.
 
@@ -35,9 +38,13 @@ def variable_bands(
         What is printed.
     unknowns : sequence of Unknown
         What is not known of its scene.
+    numerics : mapping of str to array, optional
+        What numerics leave open, either way; of those that are not named it is not known.
     """
     values = _row(centre, centre)
-    both = band(lambda scene, standing: _row(make(scene, standing), centre), values, unknowns, np.zeros(values.size))
+    open_ones = {name: np.full(np.shape(value), np.nan) for name, value in centre.items()} | dict(numerics or {})
+    errors = _row(open_ones, centre)
+    both = band(lambda scene, standing: _row(make(scene, standing), centre), values, unknowns, errors)
     found, first = {}, 0
     for name, value in centre.items():
         place = first + np.arange(value.size).reshape(value.shape)

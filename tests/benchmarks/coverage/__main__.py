@@ -1,12 +1,13 @@
 """How many true machines are inside the bands of what is not known, and how wide these are.
 
-Run: python -m tests.benchmarks.coverage [balls rollers mixed] [--draws 40] [--seed 7]
+Run: python -m tests.benchmarks.coverage [balls rollers mixed] [--draws 40] [--seed 7] [--critical]
 
 Three machines whose scenes stand here: two balls with a spring, two estimated roller bearings, and a ball and a roller
-bearing in a housing on feet. Of each, true machines are drawn (`tests.benchmarks.coverage.draws`) and solved whole; the
-bands are those of `mbs modes`, `lsa` and `statics`. Told are the share inside of all values, that of the worst one, and
-the median of the width of bands over the range from 5 to 95 % of the draws. Bars: 85 to 98 % inside, none under 70 %, a
-width of at most 1.5.
+bearing in a housing on feet. Of each, true machines
+are drawn (`tests.benchmarks.coverage.draws`) and solved whole; bands are those of `mbs modes`, `lsa` and `statics`, with
+--critical those of `mbs critical`. Told are the share inside of all values, that of the worst one, and the median of the
+width of bands over the range from 5 to 95 % of the draws. Bars: 85 to 98 % inside, none under 70 %, a width of at most
+1.5.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from mbs import assemble, lsa, modes, read_scene, statics
 from mbs.unknowns.looks import Band
+from tests.benchmarks.coverage.critical import Bounds, measured
 from tests.benchmarks.coverage.draws import drawn, truth
 
 MACHINES = ("balls", "rollers", "mixed")
@@ -28,7 +30,7 @@ HIGHEST = 2500.0
 """Frequency up to which modes count [Hz]."""
 
 
-def line(label: str, band: Band, truths: FloatArray) -> str:
+def line(label: str, band: Band | Bounds, truths: FloatArray) -> str:
     """Share inside of values (draws, ...) a band (...), the worst of them, and the width beside that of the draws."""
     known = np.isfinite(truths) & np.isfinite(band.low)
     slack = 1e-9 * np.abs(band.value)
@@ -74,15 +76,29 @@ def measure(name: str, draws: int, seed: int) -> list[str]:
     return lines
 
 
+def measure_critical(name: str, draws: int, seed: int) -> list[str]:
+    """Lines on the first critical speed of one machine, and on its largest response to an unbalance."""
+    found = measured(read_scene(str(Path(__file__).with_name(f"{name}.toml"))), draws, seed)
+    return [
+        f"{name}: {draws} draws",
+        "                   inside   worst     width  half-width    lost",
+        line("critical speed", *found.speed),
+        line("damping ratio", *found.ratio),
+        line("response", *found.response),
+    ]
+
+
 def main() -> None:
     """Measure the machines that are named."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("machines", nargs="*", default=MACHINES)
     parser.add_argument("--draws", type=int, default=40)
     parser.add_argument("--seed", type=int, default=7)
+    parser.add_argument("--critical", action="store_true", help="critical speeds and responses to an unbalance")
     given = parser.parse_args()
     for name in given.machines:
-        print("\n".join(measure(name, given.draws, given.seed)), flush=True)
+        make = measure_critical if given.critical else measure
+        print("\n".join(make(name, given.draws, given.seed)), flush=True)
 
 
 if __name__ == "__main__":
