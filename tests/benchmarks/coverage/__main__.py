@@ -3,11 +3,10 @@
 Run: python -m tests.benchmarks.coverage [balls rollers mixed] [--draws 40] [--seed 7] [--critical]
 
 Three machines whose scenes stand here: two balls with a spring, two estimated roller bearings, and a ball and a roller
-bearing in a housing on feet. Of each, true machines
-are drawn (`tests.benchmarks.coverage.draws`) and solved whole; bands are those of `mbs modes`, `lsa` and `statics`, with
---critical those of `mbs critical`. Told are the share inside of all values, that of the worst one, and the median of the
-width of bands over the range from 5 to 95 % of the draws. Bars: 85 to 98 % inside, none under 70 %, a width of at most
-1.5.
+bearing in a housing on feet. Of each, true machines are drawn (`tests.benchmarks.coverage.draws`) and solved whole;
+bands are those of `mbs modes`, `lsa` and `statics`, with --critical those of `mbs critical`. Told are the share inside
+of all values, that of the worst one, and the median of the width of bands over the range from 5 to 95 % of the draws.
+Bars: 85 to 98 % inside, none under 70 %, a width of at most 1.5.
 """
 
 from __future__ import annotations
