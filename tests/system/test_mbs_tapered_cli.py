@@ -55,7 +55,7 @@ def test_films_are_the_default_and_feel_oil_and_roughness(capsys, here, bearing)
     ask = (*bearing, "--load", "5 kN", "--speed", "3000 rpm")
     pages = {
         words: run(capsys, *ask, *words)[1]
-        for words in ((), ("--law", "table"), ("--oil", "ISO VG 10"), ("--roughness", "0.5 um"))
+        for words in ((), ("--law", "table"), ("--law", "formula"), ("--oil", "ISO VG 10"), ("--roughness", "0.5 um"))
     }
 
     def along(words, label):
@@ -66,6 +66,9 @@ def test_films_are_the_default_and_feel_oil_and_roughness(capsys, here, bearing)
     assert along((), "damping,") > along(("--oil", "ISO VG 10"), "damping,") > 0.0
     assert along(("--roughness", "0.5 um"), "damping,") < along((), "damping,")
     assert "roughness 0.5 um" in pages["--roughness", "0.5 um"]
+    formula = along(("--law", "formula"), "stiffness")
+    assert formula == pytest.approx(along((), "stiffness"), rel=0.03)  # of the formula's film offset
+    assert "damping is far too low" in pages["--law", "formula"]
 
 
 def test_tables_hold_the_balance(capsys, here) -> None:

@@ -6,7 +6,7 @@ import argparse
 import dataclasses
 import math
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.catalogue import designated
@@ -26,6 +26,9 @@ from mbs.scene.specs import TaperedSpec
 
 if TYPE_CHECKING:
     from mbs.exports.one_bearing.kind import ExportKind
+
+FORMULA = "formula"
+"""Law with films by the formula of Moes."""
 
 _TAKEN = ("law", "physics", "temperature", "supply", "roughness", "films")
 """Choices that all of them take; those without a contact angle have a clearance too."""
@@ -96,7 +99,9 @@ def _words_of(request: Request) -> tuple[str, str]:
         rough = "" if conditions.surface.smooth else f", {conditions.surface.label}"
         warm = ", inlet heat" if conditions.inlet_heat else ""
         layer = "" if conditions.supply.flooded else f", {conditions.supply.label}"
-        return f"film table at radius and speed of the middle{warm}{layer}, rib dry{rough}", films
+        by_formula = "film formula moes (its damping is far too low for loaded contacts)"
+        source = by_formula if request.law == FORMULA else "film table"
+        return f"{source} at radius and speed of the middle{warm}{layer}, rib dry{rough}", films
     return "dry, ISO/TS 16281, rib Hertz" + (f", {damper.words} of each contact" if damper.words else ""), films
 
 
@@ -114,7 +119,8 @@ def _films(request: Request) -> Callable[[float], LineFilms] | None:
     from mbs.scene.locating.line_films import FilmsOfLines, OilOfLines
 
     geometry, temperature = request.force.geometry, request.description.temperature
-    oil = OilOfLines("table", request.oil, temperature, fastest, request.conditions)
+    law: Literal["table", "formula"] = "formula" if request.law == FORMULA else "table"
+    oil = OilOfLines(law, request.oil, temperature, fastest, request.conditions)
     films = FilmsOfLines(geometry, oil)
     return lambda u: films(u / geometry.entrainment_speed(1.0), 0.0)
 
@@ -157,7 +163,7 @@ TAPERED_BEARINGS = Family(
     words="tapered roller bearing",
     taken=_TAKEN,
     own=("profile", "slices"),
-    film_laws=(TABLE_LAW,),
+    film_laws=(TABLE_LAW, FORMULA),
     beside_laws="",
     memory=(".c", ".fmu"),
     spec=TaperedSpec,
