@@ -47,7 +47,7 @@ def here(tmp_path, monkeypatch):
     return tmp_path / "machine.toml"
 
 
-@pytest.fixture(params=WITH_FILMS, ids=NAMES)
+@pytest.fixture
 def machine(request, here):
     here.write_text(f"{request.param.text()}\n{TOLERANCES}\n", encoding="utf-8")
     return request.param
@@ -68,6 +68,7 @@ def hold(found, ends, names, slack=0.0):
             assert np.all(inside[known]), name
 
 
+@pytest.mark.parametrize("machine", WITH_FILMS, ids=NAMES, indirect=True)
 def test_statics(machine, capsys):
     found, out = solved(capsys, "statics", "--bands", "all")
     check_units(found)
@@ -78,6 +79,15 @@ def test_statics(machine, capsys):
     assert {"bearing_stiffness_low", "bearing_force_low", "minimum_film_low"} <= set(found)
 
 
+@pytest.mark.parametrize(
+    "machine",
+    # of each shape of raceway in the short tier
+    [
+        pytest.param(one, id=one.name, marks=[pytest.mark.slow] * (place % 3 > 0))
+        for place, one in enumerate(WITH_FILMS)
+    ],
+    indirect=True,
+)
 def test_modes(machine, capsys):
     """Modes keep their order over so small a change; those that do not swing everywhere have no bounds."""
     found, _ = solved(capsys, "modes", "--bands", "all", "--highest", "3 kHz")

@@ -24,7 +24,7 @@ def test_damaged_files_are_read_or_refused_and_do_no_harm(name) -> None:
     found = fuzz(READERS[name](), MUTATIONS, 14)
     assert found.failed == 0, checks_text([found])
     # Neither all refused nor all read: the damage is of the kind that tells something.
-    assert found.right >= 2 and found.refused > 0.5 * MUTATIONS
+    assert found.right >= 2 and found.refused > 0.3 * MUTATIONS
     assert found.tried == MUTATIONS
 
 
