@@ -169,6 +169,7 @@ def _openfoam_missing() -> tuple[str, ...]:
 
 
 _FILM_FORMULAS = ("moes", "dowson-toyoda", "pan-hamrock")
+_DAMPINGS = ("rigid", "dietl")
 _FLOWS = ("thin_film", "full_stress")
 _INLET = "length of the inlet over sqrt(2 h R)"
 _DENSITY = "cells per e-fold of distance from inlet, exit and spike; 6.5: about 100 a contact"
@@ -179,7 +180,14 @@ _START = "start of a point: its Reynolds solution, which also places the cells, 
 _TIMEOUT = "seconds after which a point, all grids together, is stopped and failed"
 SOLVERS: Mapping[str, SolverEntry] = {
     "hertz": SolverEntry((), _hertz),
-    "formula": SolverEntry((Key("film_formula", "formula of the central film", words=_FILM_FORMULAS),), _formula),
+    "formula": SolverEntry(
+        (
+            Key("film_formula", "formula of the central film", words=_FILM_FORMULAS),
+            Key("damping", "damping of a rigid film, or that of a contact by Dietl's regression", words=_DAMPINGS),
+            Key("inlet_length_factor", "length factor of the inlet zone of Dietl's regression", (0.01, 100.0)),
+        ),
+        _formula,
+    ),
     "reynolds": SolverEntry(
         (
             Key("density", _DENSITY, SETTING_LIMITS["density"]),

@@ -31,6 +31,7 @@ from ehdmaps.arrays import FloatArray, Values
 from ehdmaps.errors import InputError
 from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.films import (
+    dietl_damping,
     dowson_higginson_minimum,
     dowson_toyoda_central,
     elastic_piezoviscous,
@@ -109,6 +110,7 @@ def too_thin(film: float, roughness: float = 0.0) -> str:
 
 
 FilmFormula = Literal["moes", "dowson-toyoda", "pan-hamrock"]
+DampingFormula = Literal["rigid", "dietl"]
 
 
 @dataclass(frozen=True)
@@ -142,8 +144,9 @@ class FormulaSolver(ContactSolverDefaults):
     """Film offset = central film h_c of a published formula; its load derivative gives the film compliance.
 
     The loss compliance is c/k_h^2 with the rigid rolling film, c = 6.548 eta0 (R/h_c)^1.5, and k_h =
-    -dw/dh_c. The minimum film is the larger of Dowson-Higginson's and Martin's, at most h_c; the largest
-    pressure is Hertz's.
+    -dw/dh_c. With Dietl's regression for the contact c_D/k_dry^2 is added: of loaded contacts, where solids yield more
+    than films, c is c_D; of light ones that of the film. The minimum film is the larger of Dowson-Higginson's and
+    Martin's, at most h_c; the largest pressure is Hertz's.
 
     Attributes
     ----------
@@ -152,6 +155,10 @@ class FormulaSolver(ContactSolverDefaults):
         as the reason of a film.
     thickest_film : float
         Largest h/R that is no refusal; infinite for lines that stand for their groups only.
+    damping : {"rigid", "dietl"}
+        What gives the damping.
+    inlet_length_factor : float
+        Length factor f of Dietl's inlet zone.
 
     Raises
     ------
@@ -161,6 +168,8 @@ class FormulaSolver(ContactSolverDefaults):
 
     film_formula: FilmFormula = "moes"
     thickest_film: float = THICKEST_FILM
+    damping: DampingFormula = "rigid"
+    inlet_length_factor: float = 1.0
 
     def __post_init__(self) -> None:
         if self.film_formula not in FILM_FORMULAS:
@@ -190,7 +199,7 @@ class FormulaSolver(ContactSolverDefaults):
         try:
             with np.errstate(all="ignore"):
                 film, slope = FILM_FORMULAS[self.film_formula](contact, state, w, entrainment_speed)
-                loss = rolling_film_damping(film, state.viscosity, contact.radius) * slope**2
+                loss = self._loss(contact, state, w, entrainment_speed, film, slope)
                 minimum = np.minimum(film, _minimum_film(contact, state, w, entrainment_speed))
         except (OverflowError, ZeroDivisionError):  # of numbers that all loads share
             film = slope = loss = minimum = np.full(w.shape, math.nan)
@@ -200,7 +209,32 @@ class FormulaSolver(ContactSolverDefaults):
     def settings(self) -> dict[str, float | int | str]:
         """The formula."""
         thickest = {} if self.thickest_film == THICKEST_FILM else {"thickest_film": self.thickest_film}
-        return {"film_formula": self.film_formula, **thickest}
+        dietl = {"damping": self.damping, "inlet_length_factor": self.inlet_length_factor}
+        return {"film_formula": self.film_formula, **thickest, **(dietl if self.damping == "dietl" else {})}
+
+    def _loss(
+        self,
+        contact: LineContact,
+        state: LubricantState,
+        load: FloatArray,
+        speed: float,
+        film: FloatArray,
+        slope: FloatArray,
+    ) -> FloatArray:
+        """Loss compliance c/k^2 a length [m2 s/N]."""
+        rigid = np.asarray(rolling_film_damping(film, state.viscosity, contact.radius) * slope**2)
+        if self.damping == "rigid":
+            return rigid
+        length = contact.roller_length
+        if length is None:
+            raise InputError(
+                f"damping: got 'dietl' for {contact.name!r}, whose length is not known; allowed: in a [bearing], or "
+                "with roller_length of a [contact]"
+            )
+        alpha = state.pressure_viscosity.pressure_viscosity
+        numbers = load, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus, length
+        whole = dietl_damping(*numbers, self.inlet_length_factor)
+        return rigid + np.asarray(whole / length * np.asarray(contact.structural_compliance(load)) ** 2)
 
     def _film(
         self,
