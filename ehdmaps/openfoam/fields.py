@@ -13,6 +13,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import SolverError
 from ehdmaps.extras import needs
+from ehdmaps.openfoam.dictionary import camel
 from ehdmaps.openfoam.pyfoam import parse
 from ehdmaps.outputs import FIELDS, MARK, written_aside
 
@@ -27,14 +28,15 @@ _BRACKETS = bytes.maketrans(b"()", b"  ")
 
 @dataclass(frozen=True)
 class FilmFields:
-    """The film between both surfaces, a plane mesh of quadrangles with a value of each field a cell.
+    """The film between both surfaces: a mesh with a value of each field a cell.
 
     Attributes
     ----------
     points : ndarray, shape (points, 3)
-        x along, y across the film, from the contact centre; z = 0 [m].
-    quads : ndarray, shape (cells, 4)
-        Indices of the corners.
+        From the contact centre [m]. Of a line contact x along, y across the film, z = 0; of the half of a point contact
+        x along, y >= 0 beside, z across the film.
+    corners : ndarray, shape (cells, 4) or (cells, 8)
+        Indices of the points at the corners of its quadrangles, or hexahedra.
     p : ndarray, shape (cells,)
         Pressure [Pa].
     U : ndarray, shape (cells, 3)
@@ -50,7 +52,7 @@ class FilmFields:
     """
 
     points: FloatArray
-    quads: IntArray
+    corners: IntArray
     p: FloatArray
     U: FloatArray
     mu: FloatArray
@@ -61,10 +63,10 @@ class FilmFields:
     @property
     def block(self) -> tuple[str, IntArray]:
         """Shape of the cells and their corners."""
-        return "quad", self.quads
+        return "quad" if self.corners.shape[1] == 4 else "hexahedron", self.corners
 
     def profile(self, values: FloatArray, x: float, rows: int) -> tuple[FloatArray, FloatArray]:
-        """Values in the column of cells nearest to a place.
+        """Values of a line contact in the column of cells nearest to a place.
 
         Parameters
         ----------
@@ -82,7 +84,7 @@ class FilmFields:
         values : ndarray, shape (rows,)
             Values there.
         """
-        corners = self.points[self.quads]
+        corners = self.points[self.corners]
         centres = corners.mean(axis=1)
         nearest = np.argsort(np.abs(centres[:, 0] - x), kind="stable")[0]
         column = np.argsort(np.abs(centres[:, 0] - centres[nearest, 0]), kind="stable")[:rows]
@@ -92,38 +94,7 @@ class FilmFields:
         return (centres[column, 1] - low) / (high - low), values[column]
 
 
-@dataclass(frozen=True)
-class PointFields:
-    """Half of the film of a point contact, rows of hexahedra over its columns, with a value of each field a cell.
-
-    Attributes
-    ----------
-    points : ndarray, shape (points, 3)
-        x along, y >= 0 beside, z across the film, from the contact centre [m].
-    hexahedra : ndarray, shape (cells, 8)
-        Indices of the corners.
-    p, mu, rho, liquid_fraction : ndarray, shape (cells,)
-        Fields as in `FilmFields`.
-    U : ndarray, shape (cells, 3)
-        Velocity [m/s].
-    """
-
-    points: FloatArray
-    hexahedra: IntArray
-    p: FloatArray
-    U: FloatArray
-    mu: FloatArray
-    rho: FloatArray
-    liquid_fraction: FloatArray
-    T: None = None
-
-    @property
-    def block(self) -> tuple[str, IntArray]:
-        """Shape of the cells and their corners."""
-        return "hexahedron", self.hexahedra
-
-
-def read_point_fields(case: Path, columns: int, lines: int, rows: int) -> PointFields:
+def read_point_fields(case: Path, columns: int, lines: int, rows: int) -> FilmFields:
     """Read the fields of a point contact that has run with `writeFields true`.
 
     Parameters
@@ -146,15 +117,7 @@ def read_point_fields(case: Path, columns: int, lines: int, rows: int) -> PointF
     floor = [number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]]
     corners = [*(each[..., :-1] for each in floor), *(each[..., 1:] for each in floor)]
     cells, last = columns * lines * rows, case / TIME
-    return PointFields(
-        points=points,
-        hexahedra=np.stack(corners, axis=-1).reshape(cells, 8),
-        p=_field(last / "p", cells, 1),
-        U=_field(last / "U", cells, 3),
-        mu=_field(last / "mu", cells, 1),
-        rho=_field(last / "rho", cells, 1),
-        liquid_fraction=_field(last / "liquidFraction", cells, 1),
-    )
+    return FilmFields(points, np.stack(corners, axis=-1).reshape(cells, 8), **_in_cells(last, cells))
 
 
 def read_fields(case: Path) -> FilmFields:
@@ -185,21 +148,12 @@ def read_fields(case: Path) -> FilmFields:
     plane = points[used]
     thickness = int(np.argmin(np.ptp(plane[:, 1:], axis=0))) + 1
     flat = np.column_stack([plane[:, 0], plane[:, 3 - thickness], np.zeros(used.size)])
-    velocity = _field(last / "U", cells, 3)
-    velocity = np.column_stack([velocity[:, 0], velocity[:, 3 - thickness], np.zeros(cells)])
-    return FilmFields(
-        points=flat,
-        quads=quads.reshape(cells, 4),
-        p=_field(last / "p", cells, 1),
-        U=velocity,
-        mu=_field(last / "mu", cells, 1),
-        rho=_field(last / "rho", cells, 1),
-        liquid_fraction=_field(last / "liquidFraction", cells, 1),
-        T=_field(last / "T", cells, 1) if (last / "T").exists() else None,
-    )
+    values = _in_cells(last, cells)
+    values["U"] = np.column_stack([values["U"][:, 0], values["U"][:, 3 - thickness], np.zeros(cells)])
+    return FilmFields(flat, quads.reshape(cells, 4), **values)
 
 
-def write_fields(fields: FilmFields | PointFields, path: Path) -> None:
+def write_fields(fields: FilmFields, path: Path) -> None:
     """Write the fields as VTU or XDMF, by the ending of the file, for ParaView: coordinates in m, all data a cell.
 
     A film is a thousand times longer than thick: look at it with its y scaled.
@@ -222,6 +176,12 @@ def write_fields(fields: FilmFields | PointFields, path: Path) -> None:
         mesh.write(aside, **options)
         with aside.open("a", encoding="utf-8") as file:
             file.write(f"<!-- {MARK} -->\n")
+
+
+def _in_cells(folder: Path, cells: int) -> dict[str, FloatArray]:
+    """The fields of a folder, by the names of `FilmFields`."""
+    widths = {"p": 1, "U": 3, "mu": 1, "rho": 1, "liquid_fraction": 1} | ({"T": 1} if (folder / "T").exists() else {})
+    return {name: _field(folder / camel(name), cells, width) for name, width in widths.items()}
 
 
 def _list(path: Path, width: int) -> FloatArray:

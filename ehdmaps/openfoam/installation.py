@@ -29,7 +29,7 @@ DEBIAN = Path("/usr/share/openfoam")
 
 DEBIAN_ENVIRONMENT = {"WM_PROJECT_DIR": str(DEBIAN), "WM_PROJECT_VERSION": "v1912"}
 
-NO_PATH = re.compile(r"[\s\"']")
+_NO_PATH = re.compile(r"[\s\"']")
 """Characters that OpenFOAM does not take in the path of a case."""
 
 _CASES = "openfoam_cases"
@@ -117,7 +117,7 @@ def installation(environment: Mapping[str, str] | None = None) -> Installation:
         )
     if shutil.which("setpriv", path=known.get("PATH")) is None:
         problems.append("setpriv is not in PATH; install the package util-linux")
-    if NO_PATH.search(str(solver)):
+    if _NO_PATH.search(str(solver)):
         problems.append(
             f"ehlFoam: got the program {str(solver)!r}; OpenFOAM takes no spaces or quotes in its path; set "
             f"{FOLDER_VARIABLE} to another folder and build there"
@@ -142,7 +142,7 @@ def installation(environment: Mapping[str, str] | None = None) -> Installation:
             f"case {_CASE}: is not in {folder}, and {_NO_CASES}; install ehdmaps again, or copy "
             f"{_CASES}/{_CASE} of the project into that folder"
         )
-    if NO_PATH.search(tempfile.gettempdir()):
+    if _NO_PATH.search(tempfile.gettempdir()):
         problems.append(
             f"the folder for temporary files: got {tempfile.gettempdir()!r}; OpenFOAM takes no spaces or quotes in it; "
             "set TMPDIR to another folder"
@@ -156,6 +156,24 @@ def installation(environment: Mapping[str, str] | None = None) -> Installation:
         template_hash=_hash(template),
         environment=extra,
     )
+
+
+def case_problems(solver: str, keep_cases: Path | None) -> list[str]:
+    """Tell why cases may not be kept in a folder; none where they may.
+
+    Parameters
+    ----------
+    solver : str
+        What messages call the solver.
+    keep_cases : Path or None
+        The folder; None where none are kept.
+    """
+    if keep_cases is None or not _NO_PATH.search(str(keep_cases.absolute())):
+        return []
+    return [
+        f"{solver}, keep_cases: got {str(keep_cases.absolute())!r}; OpenFOAM takes no spaces or quotes in the path of "
+        "a case; choose another folder"
+    ]
 
 
 def missing() -> tuple[str, ...]:

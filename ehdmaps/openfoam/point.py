@@ -18,8 +18,8 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.compiling import cpu_seconds
 from ehdmaps.errors import InputError, Problems, SolverError
 from ehdmaps.openfoam.case import working_case
-from ehdmaps.openfoam.fields import PointFields, read_point_fields
-from ehdmaps.openfoam.installation import NO_PATH, Installation, installation
+from ehdmaps.openfoam.fields import FilmFields, read_point_fields
+from ehdmaps.openfoam.installation import Installation, case_problems, installation
 from ehdmaps.openfoam.point_case import (
     PointColumns,
     PointParameters,
@@ -66,7 +66,7 @@ class PointFilm(PointNumbers):
         Columns along the motion, lines beside it, rows across the film.
     columns : PointColumns or None
         The film over its columns.
-    fields : PointFields or None
+    fields : FilmFields or None
         Fields in the cells, where asked for.
     """
 
@@ -74,7 +74,7 @@ class PointFilm(PointNumbers):
     reason: str
     mesh: tuple[int, int, int] = (0, 0, 0)
     columns: PointColumns | None = field(default=None, repr=False)
-    fields: PointFields | None = field(default=None, repr=False)
+    fields: FilmFields | None = field(default=None, repr=False)
 
 
 @dataclass(frozen=True)
@@ -115,11 +115,7 @@ class OpenFoamPointSolver:
         if not problems and self.columns * self.lines > MOST_COLUMNS:
             got = f"{self.columns} x {self.lines}"
             problems.append(f"openfoam point solver, columns, lines: got {got}; allowed: {MOST_COLUMNS} in all")
-        if self.keep_cases is not None and NO_PATH.search(str(self.keep_cases.absolute())):
-            problems.append(
-                f"openfoam point solver, keep_cases: got {str(self.keep_cases.absolute())!r}; OpenFOAM takes no spaces "
-                "or quotes in the path of a case; choose another folder"
-            )
+        problems += case_problems("openfoam point solver", self.keep_cases)
         problems.check()
 
     def solve(
@@ -188,7 +184,7 @@ class OpenFoamPointSolver:
 
     def _run(
         self, asked: PointParameters, name: str, with_fields: bool
-    ) -> tuple[PointResults, PointColumns, PointFields | None]:
+    ) -> tuple[PointResults, PointColumns, FilmFields | None]:
         """One run in a folder of its own."""
         environment, end = self.installed.full_environment(), time.monotonic() + self.timeout
         mesh = (asked.columns, asked.lines, asked.rows)
@@ -246,7 +242,7 @@ def _film(
     moes: tuple[float, float],
     results: PointResults,
     columns: PointColumns,
-    fields: PointFields | None,
+    fields: FilmFields | None,
     seconds: float,
 ) -> PointFilm:
     """Numbers of the fine mesh, with errors from what both meshes differ by, or a refusal."""

@@ -9,16 +9,17 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import SolverError
 from ehdmaps.openfoam.dictionary import HEADER, block, count, entry, line, oil_blocks, switch
-from ehdmaps.openfoam.pyfoam import parse
-from ehdmaps.openfoam.results import FILM, STATUSES, number, numbers, read_table
+from ehdmaps.openfoam.results import FILM, ended, key_of, number, numbers, read_table
 from ehdmaps.physics.lubricant import LubricantState
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.solution import Status
 
 COLUMNS = ("x", "y", "pressure", "film", "liquid_fraction")
 """Columns of the table of the film."""
+
+_PAIRS = ("central_film", "minimum_film", "film_offset", "max_pressure", "compliance", "loss_compliance")
+"""Numbers that a run writes of both meshes."""
 
 INLET_LENGTH = 20.0
 """Length of the inlet in sqrt(2 h Rx); around the mesh the pressure goes on as it falls there."""
@@ -158,28 +159,12 @@ def read_point_results(case: Path) -> PointResults:
     SolverError
         If it is not there or is not what `ehlFoam` writes: where, what was got, what is allowed.
     """
-    path = case / "results"
-    entries = parse(path)
-    word = entries.get("status")
-    if not isinstance(word, str) or word not in STATUSES:
-        raise SolverError(f"{path}, status: got {word!r:.60}; allowed: {', '.join(STATUSES)}")
-    status, reason = STATUSES[word], str(entries.get("reason", "")).strip('"')
-    iterations = int(number(path, entries, "iterations"))
-    if status is not Status.CONVERGED:
-        return PointResults(status, reason, iterations)
-    return PointResults(
-        status=status,
-        reason=reason,
-        iterations=iterations,
-        central_film=numbers(path, entries, "centralFilm", 2),
-        minimum_film=numbers(path, entries, "minimumFilm", 2),
-        film_offset=numbers(path, entries, "filmOffset", 2),
-        max_pressure=numbers(path, entries, "maximumPressure", 2),
-        compliance=numbers(path, entries, "compliance", 2),
-        loss_compliance=numbers(path, entries, "lossCompliance", 2),
-        mass_defect=number(path, entries, "massDefect"),
-        load_defect=number(path, entries, "loadDefect"),
-    )
+    path, entries, end = ended(case)
+    if end["status"] is not Status.CONVERGED:
+        return PointResults(**end)
+    end |= {name: numbers(path, entries, key_of(name), 2) for name in _PAIRS}
+    end |= {name: number(path, entries, key_of(name)) for name in ("mass_defect", "load_defect")}
+    return PointResults(**end)
 
 
 def read_point_columns(case: Path, columns: int, lines: int) -> PointColumns:

@@ -13,25 +13,25 @@ import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import SolverError
+from ehdmaps.openfoam.dictionary import camel
 from ehdmaps.openfoam.pyfoam import parse
 from ehdmaps.physics.solution import Status
 
-STATUSES: Mapping[str, Status] = {
-    "converged": Status.CONVERGED,
-    "stagnated": Status.STAGNATED,
-    "diverged": Status.DIVERGED,
-}
+_STATUSES = {status.name.lower(): status for status in (Status.CONVERGED, Status.STAGNATED, Status.DIVERGED)}
 """Words of `ehlFoam` for how a run ended."""
 
-HEAT: Mapping[str, str] = {
-    "film_temperature": "filmTemperature",
-    "surface_temperature": "surfaceTemperature",
-    "dissipated_heat": "dissipatedHeat",
-    "compression_heat": "compressionHeat",
-    "carried_heat": "carriedHeat",
-    "wall_heat": "wallHeat",
-}
-"""Numbers of a film with heat, and their words there."""
+_NUMBERS = (
+    *("central_film", "minimum_film", "max_pressure", "film_offset", "wall_stress", "traction", "rolling_force"),
+    *("load_defect", "flux_defect", "outlet_defect", "cell_continuity", "seconds"),
+)
+_RESPONSES = ("film_compliance", "loss_compliance", "response_residual")
+"""Numbers of every film, and those at each frequency."""
+
+_GROUPS = (
+    ("film_temperature", "surface_temperature", "dissipated_heat", "compression_heat", "carried_heat", "wall_heat"),
+    ("oscillation_film_compliance", "oscillation_loss_compliance"),
+)
+"""Numbers that are there together or not at all: of a film with heat, and of an oscillation in time."""
 
 FILM, THIN_FILM = "film.dat", "thinFilm.dat"
 """Tables of the film as it is, and, of a run with all stresses, of the thin film from which it starts."""
@@ -154,42 +154,61 @@ def read_results(case: Path) -> Results:
     SolverError
         If it is not there or is not what `ehlFoam` writes: where, what was got, what is allowed.
     """
+    path, entries, end = ended(case)
+    if end["status"] is not Status.CONVERGED:
+        return Results(**end)
+    frequencies = numbers(path, entries, "frequencies", None)
+    groups = [name for group in _GROUPS if key_of(group[0]) in entries for name in group]
+    end |= {name: number(path, entries, key_of(name)) for name in (*_NUMBERS, *groups)}
+    end |= {name: numbers(path, entries, key_of(name), len(frequencies)) for name in _RESPONSES}
+    return Results(**end, frequencies=frequencies)
+
+
+def ended(case: Path) -> tuple[Path, Mapping[str, Any], dict[str, Any]]:
+    """Read how a run ended.
+
+    Parameters
+    ----------
+    case : Path
+        The case folder.
+
+    Returns
+    -------
+    path : Path
+        The file `results`.
+    entries : mapping
+        Its entries.
+    end : dict
+        Status, reason and iterations, by the names of `Results`.
+
+    Raises
+    ------
+    SolverError
+        If it is not there or is not what `ehlFoam` writes.
+    """
     path = case / "results"
     entries = parse(path)
     word = entries.get("status")
-    if not isinstance(word, str) or word not in STATUSES:
-        raise SolverError(f"{path}, status: got {word!r:.60}; allowed: {', '.join(STATUSES)}")
-    status = STATUSES[word]
-    reason = str(entries.get("reason", "")).strip('"')
-    iterations = int(number(path, entries, "iterations"))
-    if status is not Status.CONVERGED:
-        return Results(status, reason, iterations)
-    frequencies = numbers(path, entries, "frequencies", None)
-    oscillated = "oscillationFilmCompliance" in entries
-    return Results(
-        status=status,
-        reason=reason,
-        iterations=iterations,
-        central_film=number(path, entries, "centralFilm"),
-        minimum_film=number(path, entries, "minimumFilm"),
-        max_pressure=number(path, entries, "maximumPressure"),
-        film_offset=number(path, entries, "filmOffset"),
-        wall_stress=number(path, entries, "wallStress"),
-        traction=number(path, entries, "traction"),
-        rolling_force=number(path, entries, "rollingForce"),
-        frequencies=frequencies,
-        film_compliance=numbers(path, entries, "filmCompliance", len(frequencies)),
-        loss_compliance=numbers(path, entries, "lossCompliance", len(frequencies)),
-        response_residual=numbers(path, entries, "responseResidual", len(frequencies)),
-        load_defect=number(path, entries, "loadDefect"),
-        flux_defect=number(path, entries, "fluxDefect"),
-        outlet_defect=number(path, entries, "outletDefect"),
-        cell_continuity=number(path, entries, "cellContinuity"),
-        **({key: number(path, entries, word) for key, word in HEAT.items()} if "filmTemperature" in entries else {}),
-        seconds=number(path, entries, "seconds"),
-        oscillation_film_compliance=number(path, entries, "oscillationFilmCompliance") if oscillated else None,
-        oscillation_loss_compliance=number(path, entries, "oscillationLossCompliance") if oscillated else None,
-    )
+    if not isinstance(word, str) or word not in _STATUSES:
+        raise SolverError(f"{path}, status: got {word!r:.60}; allowed: {', '.join(_STATUSES)}")
+    reason, iterations = str(entries.get("reason", "")).strip('"'), int(number(path, entries, "iterations"))
+    return path, entries, {"status": _STATUSES[word], "reason": reason, "iterations": iterations}
+
+
+def key_of(name: str) -> str:
+    """Word of `ehlFoam` for a number.
+
+    Parameters
+    ----------
+    name : str
+        Name of the number.
+
+    Examples
+    --------
+    >>> key_of("max_pressure")
+    'maximumPressure'
+    """
+    return camel(name.replace("max_", "maximum_"))
 
 
 def read_film(case: Path, columns: int, name: str = FILM) -> FilmTable:

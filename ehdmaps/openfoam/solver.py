@@ -17,7 +17,7 @@ from ehdmaps.compiling import cpu_seconds
 from ehdmaps.errors import InputError, Problems, SolverError
 from ehdmaps.openfoam.grid_solver import GridSolution, GridSolver
 from ehdmaps.openfoam.grids import Grids, with_rows
-from ehdmaps.openfoam.installation import NO_PATH, Installation, installation
+from ehdmaps.openfoam.installation import Installation, case_problems, installation
 from ehdmaps.openfoam.parameters import FLOWS, Flow, Heat, Mesh, Parameters, Start, isotherms
 from ehdmaps.openfoam.results import FilmTable
 from ehdmaps.openfoam.run import RunError
@@ -191,11 +191,7 @@ class OpenFoamSolver(ContactSolverDefaults):
             )
         with problems.after("openfoam solver, "):
             self.shear_law()
-        if self.keep_cases is not None and NO_PATH.search(str(self.keep_cases.absolute())):
-            problems.append(
-                f"openfoam solver, keep_cases: got {str(self.keep_cases.absolute())!r}; OpenFOAM takes no spaces or "
-                "quotes in the path of a case; choose another folder"
-            )
+        problems += case_problems("openfoam solver", self.keep_cases)
         problems.check()
 
     def shear_law(self) -> ShearLaw:

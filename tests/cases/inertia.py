@@ -127,8 +127,8 @@ def inertia(
 
 def force_of_fields(fields: FilmFields, columns: int) -> tuple[FloatArray, FloatArray]:
     """Places [m] and F there [N/m3] of the velocities and densities of a film that rolls, as CFD has them."""
-    rows = fields.quads.shape[0] // columns
-    corners = fields.points[fields.quads].reshape(columns, rows, 4, 3)
+    rows = fields.corners.shape[0] // columns
+    corners = fields.points[fields.corners].reshape(columns, rows, 4, 3)
     x = corners[..., 0].mean(axis=(1, 2))
     height = np.sort(corners[..., 1].reshape(columns, rows, 4), axis=2)
     low, high = height[:, 0, :2].mean(axis=1), height[:, -1, 2:].mean(axis=1)

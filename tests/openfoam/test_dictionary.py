@@ -171,7 +171,7 @@ def test_function_objects_run_on_the_fields(installed: Installation, template_co
     assert load is not None
     assert force / depth == pytest.approx(float(load[1]), rel=1e-3)  # oil upstream of the inlet carries 2e-4
     fields = read_fields(template_copy)
-    widths = np.ptp(fields.points[fields.quads][:, :, 0], axis=1)
+    widths = np.ptp(fields.points[fields.corners][:, :, 0], axis=1)
     # faces are larger than their projections by half of the square of the surface's slope; 10 digits of the points
     assert force / depth == pytest.approx(float(fields.p @ widths) / ROWS, rel=1e-5)
 

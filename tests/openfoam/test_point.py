@@ -67,7 +67,7 @@ def test_balances_of_the_film(kept: tuple[PointFilm, Path]) -> None:
     assert continuity is not None and float(continuity[1]) < 1e-8
     assert film.fields is not None and film.columns is not None
     # cells hold the load of half the contact, but for 2 % that a film as thick as this carries outside of the mesh
-    corners = film.fields.points[film.fields.hexahedra]
+    corners = film.fields.points[film.fields.corners]
     areas = np.ptp(corners[..., 0], axis=1) * np.ptp(corners[..., 1], axis=1) / MESH[2]
     assert 2.0 * float(film.fields.p @ areas) == pytest.approx(PLACE[0], rel=0.03)
     assert film.fields.p.max() == pytest.approx(film.max_pressure, rel=1e-9)

@@ -151,8 +151,8 @@ def test_the_cells_of_a_film_for_paraview(fake, tmp_path):
 
     film = solver(keep_cases=tmp_path / "cases").solve(BALL, OIL, *PLACE, with_fields=True)
     columns, lines, rows = MESH
-    assert film.fields.hexahedra.shape == (columns * lines * rows, 8)
-    corners = film.fields.points[film.fields.hexahedra]
+    assert film.fields.corners.shape == (columns * lines * rows, 8)
+    corners = film.fields.points[film.fields.corners]
     # cells stand as those of OpenFOAM: rows first, then along the motion; corners turn about +z, the lower face first
     middle = corners.mean(axis=1)
     assert middle[1, 2] > middle[0, 2]

@@ -172,12 +172,12 @@ def test_fields(case):
     fields = read_fields(case)
     assert fields.points.shape == ((COLUMNS + 1) * (ROWS + 1), 3)
     assert (fields.points[:, 2] == 0.0).all()
-    assert fields.quads.shape == (COLUMNS * ROWS, 4)
+    assert fields.corners.shape == (COLUMNS * ROWS, 4)
     assert fields.U.shape == (COLUMNS * ROWS, 3)
     assert (fields.rho == 880.0).all()
     assert (fields.liquid_fraction == 1.0).all()
     # every value belongs to its cell: the fake's viscosity and pressure grow along the film, its velocity across
-    centre = fields.points[fields.quads].mean(axis=1)
+    centre = fields.points[fields.corners].mean(axis=1)
     along = (centre[:, 0] - fields.points[:, 0].min()) / np.ptp(fields.points[:, 0])
     np.testing.assert_allclose(fields.p, 1e8 * along, rtol=1e-12)
     np.testing.assert_allclose(fields.mu, 0.1 + along, rtol=1e-12)
@@ -237,7 +237,7 @@ def test_fields_are_written_for_other_programs(case, tmp_path, ending):
     write_fields(fields, tmp_path / f"film{ending}")
     mesh = meshio.read(tmp_path / f"film{ending}")
     np.testing.assert_allclose(mesh.points, fields.points)
-    assert (mesh.cells_dict["quad"] == fields.quads).all()
+    assert (mesh.cells_dict["quad"] == fields.corners).all()
     assert set(mesh.cell_data) == {"p", "U", "mu", "rho", "liquid_fraction"}
     np.testing.assert_allclose(mesh.cell_data["U"][0], fields.U)
     assert len(list(tmp_path.glob("film*"))) == 1

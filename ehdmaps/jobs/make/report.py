@@ -247,14 +247,19 @@ def tip_line(dataset: xr.Dataset) -> str:
 def error_rows(dataset: xr.Dataset) -> Iterator[tuple[str, tuple[float, float, float] | None]]:
     """Yield each quantity with median, 95 % quantile and maximum of its error estimates; None where none is stated."""
     for name in ERRORS:
-        values = dataset[name].values if name in dataset else np.empty(0)
-        known = values[np.isfinite(values)]
-        label = name.removesuffix("_error").replace("_", " ")
-        if not known.size:
-            yield label, None
-            continue
-        middle, high, most = (float(value) for value in np.quantile(known, (0.5, 0.95, 1.0)))
-        yield label, (middle, high, most)
+        yield name.removesuffix("_error").replace("_", " "), _quantiles(dataset, name)
+
+
+def _quantiles(
+    dataset: xr.Dataset, name: str, shares: tuple[float, float, float] = (0.5, 0.95, 1.0)
+) -> tuple[float, float, float] | None:
+    """Quantiles of the known values of a variable; None where it is not there or none is known."""
+    values = dataset[name].values if name in dataset else np.empty(0)
+    known = values[np.isfinite(values)]
+    if not known.size:
+        return None
+    low, middle, high = map(float, np.quantile(known, shares))
+    return low, middle, high
 
 
 def value_lines(dataset: xr.Dataset) -> Iterator[str]:
@@ -273,12 +278,10 @@ def value_lines(dataset: xr.Dataset) -> Iterator[str]:
     )
     yield "  variable                     smallest     median    largest  unit"
     for name, display in shown:
-        values = dataset[name].values if name in dataset else np.empty(0)
-        known = values[np.isfinite(values)]
-        if not known.size:
+        if (numbers := _quantiles(dataset, name, (0.0, 0.5, 1.0))) is None:
             yield f"  {name:25s}        none"
         else:
-            low, middle, high = (display.value(float(value)) for value in np.quantile(known, (0.0, 0.5, 1.0)))
+            low, middle, high = map(display.value, numbers)
             yield f"  {name:25s} {low:11.4g} {middle:10.4g} {high:10.4g}  {display.unit}"
 
 
@@ -354,14 +357,12 @@ def spacing_rows(dataset: xr.Dataset) -> Iterator[tuple[str, tuple[float, float,
     """Yield each quantity with median, 95 % quantile and largest of what laws lose, and where that is."""
     for name in SPACING_ERRORS if all(name in dataset for name in SPACING_ERRORS) else ():
         values = dataset[name].transpose(*schema.DIMS).values
-        known = values[np.isfinite(values)]
-        if known.size:
-            middle, high, most = (float(value) for value in np.quantile(known, (0.5, 0.95, 1.0)))
+        if numbers := _quantiles(dataset, name):
             i, *place = np.unravel_index(int(np.nanargmax(values)), values.shape)
             at = zip(AXES, place, strict=True)
             near = [display.text(float(dataset[axis].values[n])) for (axis, display), n in at]
             label = name.removesuffix("_spacing_error").replace("_", " ")
-            yield label, (middle, high, most), f"around {dataset['contact'].values[i]}, {', '.join(near)}"
+            yield label, numbers, f"around {dataset['contact'].values[i]}, {', '.join(near)}"
 
 
 def _reference(dataset: xr.Dataset) -> str:
@@ -453,9 +454,8 @@ def _lines(dataset: xr.Dataset, record: Mapping[str, Any]) -> Iterator[str]:
             values = "".join(f"{float(record[kind][name][level]):11.2g}" for level in _LEVELS)
             yield f"  {name.replace('_', ' ') + ', ' + words:{_WIDTH}s}{values}"
     for name in MODEL_ERRORS:
-        known = dataset[name].values[np.isfinite(dataset[name].values)] if name in dataset else np.empty(0)
-        if known.size:
-            values = "".join(f"{value:11.2g}" for value in np.quantile(known, (0.5, 0.95, 1.0)))
+        if numbers := _quantiles(dataset, name):
+            values = "".join(f"{value:11.2g}" for value in numbers)
             yield f"  {name.partition('_')[0] + ', one deviation, at all points':{_WIDTH}s}{values}"
 
 

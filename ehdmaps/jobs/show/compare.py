@@ -320,8 +320,6 @@ def compare(
     usable = usable_points(here["status"]) & usable_points(there["status"])
     variables = [name for name in COMPARED if name in here and name in there] if common else []
     relative = {name: _relative(here[name].values, there[name].values, usable) for name in variables}
-    left_out = {name: int(np.count_nonzero(np.isinf(values))) for name, values in relative.items()}
-    known = {name: np.where(np.isfinite(values), values, np.nan) for name, values in relative.items()}
     dims = here["status"].dims
     place = _Grid(here)
     return Comparison(
@@ -329,10 +327,10 @@ def compare(
         titles=(str(a.attrs["title"]), str(b.attrs["title"])),
         points=(int(a["status"].size), int(b["status"].size)),
         differing=tuple(name for name in _PROVENANCE if _without_label(a, name) != _without_label(b, name)),
-        relative=xr.Dataset({name: (dims, values) for name, values in known.items()}, coords=here.coords),
+        relative=xr.Dataset({name: (dims, values) for name, (values, _) in relative.items()}, coords=here.coords),
         solved=int(usable.sum()),
         differences=tuple(
-            _difference(name, known[name], _stated(here, there, name), left_out[name], place)
+            _difference(name, *relative[name], _stated(here, there, name), place)
             for name in (variables if usable.any() else ())
         ),
         between=between,
@@ -356,16 +354,14 @@ class _Grid:
 
 def _between(sample: FilmSample) -> Between:
     """Sum up the differences of films at random points."""
-    every = np.ones(len(sample.places), dtype=bool)
-    differences = []
-    for name in COMPARED_FILMS:
-        if name in sample.first and name in sample.second:
-            relative = _relative(sample.first[name], sample.second[name], every)
-            left_out = int(np.count_nonzero(np.isinf(relative)))
-            known = np.where(np.isfinite(relative), relative, np.nan)
-            differences.append(
-                _difference(name, known, np.full(known.shape, np.nan), left_out, sample.places.__getitem__)
-            )
+    every, none_stated = np.ones(len(sample.places), dtype=bool), np.full(len(sample.places), np.nan)
+    differences = (
+        _difference(
+            name, *_relative(sample.first[name], sample.second[name], every), none_stated, sample.places.__getitem__
+        )
+        for name in COMPARED_FILMS
+        if name in sample.first and name in sample.second
+    )
     return Between(sample, tuple(differences))
 
 
@@ -377,11 +373,11 @@ def _without_label(dataset: xr.Dataset, name: str) -> object:
     return {key: value for key, value in record_from_json(text, name).items() if key != "label"}
 
 
-def _relative(a: FloatArray, b: FloatArray, usable: BoolArray) -> FloatArray:
-    """Return (b - a)/|a| where both are usable: infinite where a alone is zero, NaN elsewhere."""
+def _relative(a: FloatArray, b: FloatArray, usable: BoolArray) -> tuple[FloatArray, int]:
+    """Return (b - a)/|a| where both are usable, NaN elsewhere; and at how many of these a alone is zero, NaN too."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        relative = np.where(a == b, 0.0, (b - a) / np.abs(a))
-    return np.where(usable, relative, np.nan)
+        relative = np.where(usable, np.where(a == b, 0.0, (b - a) / np.abs(a)), np.nan)
+    return np.where(np.isfinite(relative), relative, np.nan), int(np.count_nonzero(np.isinf(relative)))
 
 
 def _stated(here: xr.Dataset, there: xr.Dataset, name: str) -> FloatArray:
@@ -398,7 +394,7 @@ def _stated(here: xr.Dataset, there: xr.Dataset, name: str) -> FloatArray:
         return np.where((a == 0.0) & (b == 0.0), np.nan, total / np.abs(a))
 
 
-def _difference(name: str, relative: FloatArray, stated: FloatArray, left_out: int, place: Any) -> Difference:
+def _difference(name: str, relative: FloatArray, left_out: int, stated: FloatArray, place: Any) -> Difference:
     """Sum up the differences of one variable."""
     signed = relative.ravel()
     known = np.isfinite(signed)

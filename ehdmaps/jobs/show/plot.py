@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -176,18 +176,7 @@ def _shade_thin(axes: Axes, sheet: Sheet, display: Display) -> None:
 
 def _small_multiples(figure: Figure, sheet: Sheet, temperatures: list[int], top: float) -> None:
     """Draw stiffness and damping of the first contact at each temperature, on common axes."""
-    dataset = sheet.dataset
-    grid = figure.add_gridspec(
-        len(_SMALL),
-        len(temperatures),
-        left=0.057,
-        right=0.92,
-        top=top - 0.05,
-        bottom=0.112,
-        wspace=0.06,
-        hspace=0.08,
-    )
-    first = str(dataset["contact"].values[0])
+    first = str(sheet.dataset["contact"].values[0])
     figure.text(
         0.057,
         top - 0.012,
@@ -195,21 +184,60 @@ def _small_multiples(figure: Figure, sheet: Sheet, temperatures: list[int], top:
         fontsize=8.5,
         fontweight="bold",
     )
-    for row, (name, label, display) in enumerate(_SMALL):
+
+    def draw(axes: Axes, row: int, temperature: int) -> None:
+        name, _, display = _SMALL[row]
+        draw_curves(axes, sheet, name, display, (0, temperature), width=0.7)
+
+    place = {"left": 0.057, "right": 0.92, "top": top - 0.05, "bottom": 0.112, "wspace": 0.06, "hspace": 0.08}
+    labels = [f"{label}\n{typeset(display.unit)}" for _, label, display in _SMALL]
+    at_temperatures(figure, sheet, place, temperatures, labels, draw, fontsize=7.5, pad=2.5)
+
+
+def at_temperatures(
+    figure: Figure,
+    sheet: Sheet,
+    place: Mapping[str, float],
+    temperatures: Sequence[int],
+    labels: Sequence[str],
+    draw: Callable[[Axes, int, int], None],
+    **title: Any,
+) -> None:
+    """Draw panels over load with a column a temperature; those of a row have common axes.
+
+    Parameters
+    ----------
+    figure : Figure
+        The page.
+    sheet : Sheet
+        The map.
+    place : mapping of str to float
+        Edges of the panels and spaces between them, as of a GridSpec of matplotlib.
+    temperatures : sequence of int
+        Temperatures of the columns, by their places in the map.
+    labels : sequence of str
+        Labels of the rows.
+    draw : callable
+        Draws a panel, of its axes, its row and the place of its temperature.
+    **title
+        How the temperature is written above each column.
+    """
+    grid = figure.add_gridspec(len(labels), len(temperatures), **place)
+    for row, label in enumerate(labels):
         left: Axes | None = None
         for column, temperature in enumerate(temperatures):
-            axes = figure.add_subplot(grid[row, column], sharey=left, sharex=left)
+            axes = figure.add_subplot(grid[row, column], sharex=left, sharey=left)
             left = left or axes
-            draw_curves(axes, sheet, name, display, (0, temperature), width=0.7)
-            axes.tick_params(which="both", labelleft=column == 0, labelbottom=row == len(_SMALL) - 1)
-            if row == 0:
-                heading = typeset(TEMPERATURE.text(float(dataset["temperature"].values[temperature])))
-                axes.set_title(heading, fontsize=7.5, pad=2.5)
+            draw(axes, row, temperature)
+            axes.tick_params(which="both", labelleft=column == 0, labelbottom=row == len(labels) - 1)
             keep_corners_free(axes)
-            if column == 0:
-                axes.set_ylabel(f"{label}\n{typeset(display.unit)}", labelpad=2)
-            if row == len(_SMALL) - 1:
+            if row == 0:
+                degrees = float(sheet.dataset["temperature"].values[temperature])
+                axes.set_title(typeset(TEMPERATURE.text(degrees)), **title)
+            if row == len(labels) - 1:
                 axes.set_xlabel(f"load, {LOAD.unit}", labelpad=1)
+            if column == 0:
+                axes.set_ylabel(label, labelpad=2)
 
 
 def _heading(figure: Figure, emap: EHDMap, shown: int) -> None:

@@ -16,6 +16,7 @@ from ehdmaps.jobs.show.plot import (
     A4_LANDSCAPE,
     FONT,
     MOST_TEMPERATURES,
+    at_temperatures,
     contact_words,
     mark_entries,
     page_legend,
@@ -24,7 +25,7 @@ from ehdmaps.jobs.show.plot import (
     write_estimated,
     write_line,
 )
-from ehdmaps.jobs.show.plot_curves import Sheet, draw_curves, keep_corners_free
+from ehdmaps.jobs.show.plot_curves import Sheet, draw_curves
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.rough_layer import (
     BOUNDARY,
@@ -39,7 +40,7 @@ from ehdmaps.maps.rough_layer import (
     rough_variables,
 )
 from ehdmaps.outputs import write_figure
-from ehdmaps.units import LOAD, TEMPERATURE, Display
+from ehdmaps.units import LOAD, Display
 
 _PLAIN = Display("")
 
@@ -82,7 +83,6 @@ def _page(sheet: Sheet) -> Figure:
     """Draw two rows of panels a contact, one column a temperature."""
     figure, dataset, surface = Figure(figsize=A4_LANDSCAPE), sheet.dataset, sheet.emap.surface
     temperatures = spread(dataset.sizes["temperature"], MOST_TEMPERATURES)
-    contacts = dataset.sizes["contact"]
     what, oil = what_is_mapped(sheet.emap)
     write_line(figure, 0.963, typeset(f"Films and {surface.label}: {what}, {oil}"), 13, "bold")
     parameter = f"Λ: minimum film between smooth surfaces over it; {_below(sheet)}."
@@ -90,25 +90,14 @@ def _page(sheet: Sheet) -> Figure:
     share = "film and asperities in balance (Johnson, Greenwood and Poon; asperities of Greenwood and Tripp)"
     write_line(figure, 0.916, f"Share of the load: {share}; a guess where the mean planes overlap.", 8)
     write_estimated(figure, 0.9, sheet.emap)
-    grid = figure.add_gridspec(
-        2 * contacts, len(temperatures), left=0.062, right=0.92, top=0.875, bottom=0.122, wspace=0.08, hspace=0.12
-    )
-    for row in range(2 * contacts):
-        left: Axes | None = None
-        for column, temperature in enumerate(temperatures):
-            axes = figure.add_subplot(grid[row, column], sharex=left, sharey=left)
-            left = left or axes
-            _panel(axes, sheet, (row // 2, temperature), row % 2 == 0)
-            axes.tick_params(which="both", labelleft=column == 0, labelbottom=row == 2 * contacts - 1)
-            keep_corners_free(axes)
-            if row == 0:
-                degrees = typeset(TEMPERATURE.text(float(dataset["temperature"].values[temperature])))
-                axes.set_title(degrees, fontsize=8.5, fontweight="bold", pad=3)
-            if row == 2 * contacts - 1:
-                axes.set_xlabel(f"load, {LOAD.unit}", labelpad=1)
-            if column == 0:
-                words = contact_words(str(dataset["contact"].values[row // 2]))
-                axes.set_ylabel(f"{words}\n" + ("Λ" if row % 2 == 0 else "film's share of the load"), labelpad=2)
+    place = {"left": 0.062, "right": 0.92, "top": 0.875, "bottom": 0.122, "wspace": 0.08, "hspace": 0.12}
+    contacts = map(contact_words, map(str, dataset["contact"].values))
+    labels = [f"{words}\n{shown}" for words in contacts for shown in ("Λ", "film's share of the load")]
+
+    def draw(axes: Axes, row: int, temperature: int) -> None:
+        _panel(axes, sheet, (row // 2, temperature), row % 2 == 0)
+
+    at_temperatures(figure, sheet, place, temperatures, labels, draw, fontsize=8.5, fontweight="bold", pad=3)
     speed_bar(figure, sheet, (0.936, 0.122, 0.011, 0.753))
     entries: list[Line2D | Patch] = [
         Line2D([], [], color="black", lw=0.8, ls=style, label=words) for _, style, words in _LINES

@@ -130,7 +130,7 @@ def _film_row(row: FilmRow, pressures: Axes, films: Axes, velocities: Axes) -> N
             axes.axvline(shown[name] / row.half_width, color=colour, lw=0.7, ls=(0, (4, 2)))
     pressures.set_title(row.title, fontsize=8.5, fontweight="bold", loc="left")
     if fields is not None:
-        rows = fields.quads.shape[0] // x.size
+        rows = fields.corners.shape[0] // x.size
         lower, upper = row.surface_speeds
         for name, colour in _PLACES:
             height, velocity = fields.profile(fields.U[:, 0], shown[name], rows)

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import variable
 from ehdmaps.errors import InputError, MapError, Problems
 from ehdmaps.jobs.make.points.asked import ENDING, MADE
 from ehdmaps.netcdf_structure import DAMAGE, structure_problem
@@ -138,28 +138,24 @@ def points_map(request: PointsRequest) -> xr.Dataset:
         table.films(contact, request.oil, loads[:, None, None], speeds[:, None], temperatures) for contact in contacts
     ]
 
-    def stacked(values: list[Any]) -> FloatArray:
-        return np.stack(values)
+    def stacked(values: list[Any], units: str, words: str) -> Any:
+        return variable(DIMS, np.stack(values), units, words)
 
     variables: dict[str, Any] = {}
     for name in NUMBERS:
         unit, words = _UNITS[name]
-        variables[name] = (DIMS, stacked([getattr(one, name) for one in films]), {"units": unit, "long_name": words})
-        wrong = stacked([one.errors[name] for one in films])
-        variables[f"{name}_error"] = (DIMS, wrong, {"units": "1", "long_name": f"error of {words}, relative"})
+        variables[name] = stacked([getattr(one, name) for one in films], unit, words)
+        variables[f"{name}_error"] = stacked([one.errors[name] for one in films], "1", f"error of {words}, relative")
+    variables["status"] = stacked([one.status for one in films], "", "status of the point")
     flags = {"flag_values": [int(each) for each in Status], "flag_meanings": " ".join(each.word for each in Status)}
-    variables["status"] = (DIMS, stacked([one.status for one in films]), {"long_name": "status of the point", **flags})
-    causes = {"long_name": "cause of the status, a number of the attribute causes; 0 for a plain film"}
-    variables["cause"] = (DIMS, stacked([one.cause for one in films]), causes)
+    variables["status"][-1].update(flags)
+    causes = "cause of the status, a number of the attribute causes; 0 for a plain film"
+    variables["cause"] = stacked([one.cause for one in films], "", causes)
     coordinates = {
-        "contact": ("contact", list(SIDES), {"long_name": "contact of a ball with this raceway"}),
-        "load": ("load", loads, {"units": "N", "long_name": "load of a ball"}),
-        "entrainment_speed": (
-            "entrainment_speed",
-            speeds,
-            {"units": "m/s", "long_name": "mean of both surface speeds"},
-        ),
-        "temperature": ("temperature", temperatures, {"units": "K", "long_name": "temperature of both surfaces"}),
+        "contact": variable("contact", list(SIDES), "", "contact of a ball with this raceway"),
+        "load": variable("load", loads, "N", "load of a ball"),
+        "entrainment_speed": variable("entrainment_speed", speeds, "m/s", "mean of both surface speeds"),
+        "temperature": variable("temperature", temperatures, "K", "temperature of both surfaces"),
     }
     attributes = {
         MADE_AS: MADE,
