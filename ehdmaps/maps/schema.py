@@ -70,9 +70,6 @@ BACKBONE_DIMS = ("zeta", "reference_speed", "temperature")
 NATURAL = "natural_frequency"
 """Axis of how these films answer."""
 
-RESPONSE_DIMS = (*BACKBONE_DIMS, NATURAL)
-"""Order of the dims of how these films answer."""
-
 OWN = "outer_"
 """How the films of the outer contact begin where it has lines of its own, on the axes of those of the inner one.
 

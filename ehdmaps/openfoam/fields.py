@@ -33,8 +33,8 @@ class FilmFields:
     Attributes
     ----------
     points : ndarray, shape (points, 3)
-        From the contact centre [m]. Of a line contact x along, y across the film, z = 0; of the half of a point contact
-        x along, y >= 0 beside, z across the film.
+        Places from the contact centre [m]. Of a line contact x along, y across the film, z = 0; of the half of a point
+        contact x along, y >= 0 beside, z across the film.
     corners : ndarray, shape (cells, 4) or (cells, 8)
         Indices of the points at the corners of its quadrangles, or hexahedra.
     p : ndarray, shape (cells,)

@@ -177,7 +177,7 @@ def ended(case: Path) -> tuple[Path, Mapping[str, Any], dict[str, Any]]:
     path : Path
         The file `results`.
     entries : mapping
-        Its entries.
+        Entries of that file.
     end : dict
         Status, reason and iterations, by the names of `Results`.
 

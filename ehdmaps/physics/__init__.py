@@ -6,14 +6,14 @@ The modules in the order in which data pass through them:
 solids              `Material`, `STEEL`, the reduced modulus E'
 bearing             `BearingGeometry`: reduced radii, entrainment speed, the two contacts of a roller
 surface             profiles of rollers (ISO 16281, arcs, tables), and `Surface`: roughness and its asperities
-designations        kinds of bearings, their classes of radial clearance, and kinds that are not served, by designation
+designations        kinds of bearings and their classes of radial clearance by designation; oils by their class
 catalogue           `BearingGeometry` estimated from what a catalogue says
 approach            the structural part of the approach: ISO 16281, Palmgren, half space, shipped finite elements
 contact             `LineContact`, `OperatingPoint`; film and solids together, which cannot pull
-isotherm            viscosity and density over pressure at one temperature; what solvers compile
+isotherm            viscosity and density over pressure at one temperature, what solvers compile; `LubricantState`
 viscosity           isotherms over temperature: Barus, Roelands, FVA 3, Tait-Doolittle; eta0 by ASTM D341, Vogel
 own_oil             the laws of an own oil, from what its user states or correlations estimate
-lubricant           `Lubricant`, and `LubricantState` at a temperature
+lubricant           `Lubricant`: its state at a temperature; oils by name
 hertz               dry line contact: half-width, pressure, gap, compliance
 moes                dimensionless groups and back: M and L; U, W and G
 films               published formulas: film thickness, damping, rolling force

@@ -31,8 +31,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.designations.clearance import ClearanceRange, class_range, delivered
 from ehdmaps.physics.designations.families import not_known, words_for_lines
-from ehdmaps.physics.designations.reader import CYLINDRICAL, NEEDLES, ROLLERS, plain_name, read_designation
-from ehdmaps.physics.designations.tables import table
+from ehdmaps.physics.designations.reader import CYLINDRICAL, NEEDLES, ROLLERS, plain_name, read_designation, table
 from ehdmaps.physics.rollers.needle_catalogue import needle_boundary, needle_designations, needle_estimate
 from ehdmaps.physics.rollers.ratings import RATING
 

@@ -320,3 +320,48 @@ def _coefficient_problem(alpha: float) -> list[str]:
     return [
         f"pressure_viscosity: got {alpha!r} 1/Pa; allowed: finite and >= 0; mineral oils have about 2e-8 1/Pa",
     ]
+
+
+@dataclass(frozen=True)
+class LubricantState:
+    """An oil at one temperature: all that an isothermal solver needs.
+
+    Attributes
+    ----------
+    temperature : float
+        [K].
+    viscosity : float
+        eta0 at ambient pressure [Pa s].
+    density : float
+        rho0 at ambient pressure [kg/m3].
+    pressure_viscosity : PressureViscosity or FreeVolume
+        The isotherm ln(eta/eta0) over pressure.
+    compressible : bool
+        Density after Dowson and Higginson if true, constant if false.
+    fitted_pressure : float
+        Highest pressure [Pa] at which the viscosity law was fitted; it is extrapolated above; inf if unknown.
+    """
+
+    temperature: float
+    viscosity: float
+    density: float
+    pressure_viscosity: IsothermLaw
+    compressible: bool
+    fitted_pressure: float
+
+    def isotherm(self, pressure_unit: float = 1.0) -> Isotherm:
+        """Viscosity and density over pressure as plain numbers, with pressures in `pressure_unit` [Pa]."""
+        return self.pressure_viscosity.isotherm(pressure_unit, self.compressible)
+
+    def viscosity_at(self, p: Values) -> Values:
+        """Viscosity eta [Pa s] at the pressures p [Pa], >= 0; inf where it exceeds the range of floats."""
+        with np.errstate(over="ignore"):
+            return as_given(self.viscosity * np.exp(self.pressure_viscosity.log_ratio(p)), p)
+
+    def density_ratio(self, p: Values) -> Values:
+        """rho/rho0 at the pressures p [Pa], >= 0, after Dowson and Higginson; 1 if incompressible."""
+        return as_given(density(self.isotherm(), p)[0], p)
+
+    def density_ratio_slope(self, p: Values) -> Values:
+        """d(rho/rho0)/dp [1/Pa] at the pressures p [Pa], >= 0."""
+        return as_given(density(self.isotherm(), p)[1], p)

@@ -9,21 +9,16 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import Any, Literal, Required, TypedDict, Unpack
+from typing import Any, Unpack
 
-import numpy as np
-
-from ehdmaps.arrays import Values, as_given
 from ehdmaps.errors import InputError, Problems, closest, label_problem, short
-from ehdmaps.physics.isotherm import FreeVolume, Isotherm, IsothermLaw, PressureViscosity, density
+from ehdmaps.physics.designations.oil_class import CLASSES, CONDUCTIVITY, DENSITY, DENSITY_SLOPE, OilClass
+from ehdmaps.physics.isotherm import FreeVolume, LubricantState, PressureViscosity
 from ehdmaps.physics.own_oil import (
-    CLASSES,
-    CONDUCTIVITY,
     CORRELATIONS,
-    DENSITY,
-    DENSITY_SLOPE,
     Anchor,
-    OilClass,
+    DensityLaw,
+    OilData,
     OilOverTemperature,
     Stated,
     anchored_coefficient,
@@ -47,7 +42,6 @@ from ehdmaps.physics.viscosity import (
 
 __all__ = ["DENSITY_LAWS", "LUBRICANTS", "DensityLaw", "FreeVolume", "Lubricant", "LubricantState", "PressureViscosity"]
 
-DensityLaw = Literal["dowson-higginson", "incompressible"]
 DENSITY_LAWS: tuple[DensityLaw, ...] = ("dowson-higginson", "incompressible")
 
 FITTED_PRESSURE = 0.6e9
@@ -56,70 +50,6 @@ FITTED_PRESSURE = 0.6e9
 
 HEAT_CAPACITY = 2000.0
 """c_p of oils where none is stated [J/(kg K)]: assumed. Mineral oils have 1700 to 2400 from 20 to 150 degC."""
-
-
-class OilData(TypedDict, total=False):
-    """Stated data of an own oil, whatever its law over pressure; explained at `Lubricant.own`."""
-
-    density: Required[float]
-    pressure_viscosity: float | str | None
-    pressure_viscosity_40: float | None
-    pressure_viscosity_100: float | None
-    pressure_viscosity_temperature: float | None
-    viscosity: float | None
-    viscosity_40: float | None
-    viscosity_100: float | None
-    density_slope: float | None
-    density_law: DensityLaw
-    fitted_pressure: float
-    thermal_conductivity: float | None
-    heat_capacity: float
-    name: str
-
-
-@dataclass(frozen=True)
-class LubricantState:
-    """An oil at one temperature: all that an isothermal solver needs.
-
-    Attributes
-    ----------
-    temperature : float
-        [K].
-    viscosity : float
-        eta0 at ambient pressure [Pa s].
-    density : float
-        rho0 at ambient pressure [kg/m3].
-    pressure_viscosity : PressureViscosity or FreeVolume
-        The isotherm ln(eta/eta0) over pressure.
-    compressible : bool
-        Density after Dowson and Higginson if true, constant if false.
-    fitted_pressure : float
-        Highest pressure [Pa] at which the viscosity law was fitted; it is extrapolated above; inf if unknown.
-    """
-
-    temperature: float
-    viscosity: float
-    density: float
-    pressure_viscosity: IsothermLaw
-    compressible: bool
-    fitted_pressure: float
-
-    def isotherm(self, pressure_unit: float = 1.0) -> Isotherm:
-        """Viscosity and density over pressure as plain numbers, with pressures in `pressure_unit` [Pa]."""
-        return self.pressure_viscosity.isotherm(pressure_unit, self.compressible)
-
-    def viscosity_at(self, p: Values) -> Values:
-        """Viscosity eta [Pa s] at the pressures p [Pa], >= 0; inf where it exceeds the range of floats."""
-        with np.errstate(over="ignore"):
-            return as_given(self.viscosity * np.exp(self.pressure_viscosity.log_ratio(p)), p)
-
-    def density_ratio(self, p: Values) -> Values:
-        """rho/rho0 at the pressures p [Pa], >= 0, after Dowson and Higginson; 1 if incompressible."""
-        return as_given(density(self.isotherm(), p)[0], p)
-
-    def density_ratio_slope(self, p: Values) -> Values:
-        """d(rho/rho0)/dp [1/Pa] at the pressures p [Pa], >= 0."""
-        return as_given(density(self.isotherm(), p)[1], p)
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,8 @@ from ehdmaps.physics.bearing import BEARINGS
 from ehdmaps.physics.catalogue import _RATINGS, designated, estimate
 from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.designations.estimates import estimated_parts
+from ehdmaps.physics.designations.oil_class import _LIMITS, _QUADRATICS, CLASSES, viscosity_100, viscosity_index
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
-from ehdmaps.physics.own_oil import _LIMITS, _QUADRATICS, CLASSES, viscosity_100, viscosity_index
 from mbs.cli import main as mbs_main
 
 SMALL = """

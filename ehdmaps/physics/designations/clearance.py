@@ -21,8 +21,15 @@ from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from ehdmaps.errors import InputError, short
-from ehdmaps.physics.designations.reader import ANGULAR, CYLINDRICAL, DEEP_GROOVE, NEEDLE, TAPERED, read_designation
-from ehdmaps.physics.designations.tables import table
+from ehdmaps.physics.designations.reader import (
+    ANGULAR,
+    CYLINDRICAL,
+    DEEP_GROOVE,
+    NEEDLE,
+    TAPERED,
+    read_designation,
+    table,
+)
 
 CLASSES = ("C2", "CN", "C3", "C4", "C5")
 NORMAL = "CN"

@@ -1,4 +1,4 @@
-"""Kind, plain name and class of radial clearance of a designation: the one reader for all kinds that are served.
+"""Kind, plain name and class of radial clearance of a designation, for all kinds that are served; rows of catalogues.
 
 Blanks, hyphens and the suffixes of seals, cages and accuracy do not matter. Those of the radial clearance do: they
 stand for themselves (C3), or behind a class of accuracy (P63).
@@ -7,7 +7,10 @@ stand for themselves (C3), or behind a class of accuracy (P63).
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
+import tomllib
+from functools import cache
+from importlib import resources
+from typing import Any, NamedTuple
 
 CYLINDRICAL, NEEDLE, NEEDLE_CAGE, DEEP_GROOVE, ANGULAR, TAPERED = (
     "cylindrical roller bearing",
@@ -136,3 +139,26 @@ def plain_name(text: str, kinds: tuple[str, ...]) -> str:
     """
     found = read_designation(text)
     return found.name if found is not None and found.kind in kinds else ""
+
+
+@cache
+def _tables() -> dict[str, dict[str, Any]]:
+    """The file, read once."""
+    text = (resources.files("ehdmaps.physics") / "shipped" / "catalogues.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text)
+
+
+def table(kind: str) -> dict[str, Any]:
+    """Return tables of catalogues and standards of a kind of bearing, by their names; each is a list of rows.
+
+    Parameters
+    ----------
+    kind : str
+        cylindrical, balls, needles, tapered, or clearance.
+
+    Examples
+    --------
+    >>> table("clearance")["balls"][0][:3]
+    [10, 0, 7]
+    """
+    return _tables()[kind]

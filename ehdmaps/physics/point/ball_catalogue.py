@@ -28,8 +28,7 @@ from typing import NamedTuple
 from ehdmaps.errors import InputError
 from ehdmaps.physics.designations.clearance import delivered
 from ehdmaps.physics.designations.families import not_known
-from ehdmaps.physics.designations.reader import BALLS, bore_code, read_designation
-from ehdmaps.physics.designations.tables import table
+from ehdmaps.physics.designations.reader import BALLS, bore_code, read_designation, table
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 
 FILLING_ARC = math.radians(189.0)

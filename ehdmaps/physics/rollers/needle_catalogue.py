@@ -28,8 +28,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.designations.clearance import delivered
 from ehdmaps.physics.designations.families import not_known
-from ehdmaps.physics.designations.reader import NEEDLES, bore_code, plain_name
-from ehdmaps.physics.designations.tables import table
+from ehdmaps.physics.designations.reader import NEEDLES, bore_code, plain_name, table
 from ehdmaps.physics.rollers.ratings import by_ratings, with_static_rating
 
 FILLED, FULL = 0.75, 0.995

@@ -23,8 +23,7 @@ from typing import NamedTuple
 
 from ehdmaps.physics.designations.clearance import delivered
 from ehdmaps.physics.designations.families import not_known
-from ehdmaps.physics.designations.reader import TAPERED, bore_code, plain_name
-from ehdmaps.physics.designations.tables import table
+from ehdmaps.physics.designations.reader import TAPERED, bore_code, plain_name, table
 from ehdmaps.physics.rollers.ratings import Rollers, by_ratings, ratings, with_static_rating
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 
