@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from ehdmaps.jobs.problem import read_contacts
@@ -10,6 +11,7 @@ from ehdmaps.jobs.supply import read_supply
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import OIL_TEMPERATURES
+from ehdmaps.physics.designations.reader import ROLLERS, plain_name
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.units import LENGTH, PRESSURE, TEMPERATURE, Display, short
 from mbs.bearings.bearing import MOST_COUPLED
@@ -138,7 +140,10 @@ def read_bearing(section: Table, name: str) -> BearingSpec | LocatingSpec | Matr
     """
     if section.choice("kind", ("rollers", "table")) == "table":
         return read_table_bearing(section, name)
-    if "bearing" in section or "geometry" in section:  # catalogues of others are loaded where they may be meant
+    stated = section.get("geometry")
+    named = stated.get("name") if isinstance(stated, Mapping) else stated
+    of_rollers = isinstance(named, str) and bool(plain_name(named, ROLLERS))
+    if "bearing" in section or not of_rollers:  # catalogues of others are loaded where they may be meant
         from mbs.scene.locating.reading import reader_of
 
         if (read := reader_of(section)) is not None:
