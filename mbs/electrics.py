@@ -5,6 +5,8 @@ are open: balls and rollers are taken in the middle of their gap, opened by the 
 side. All contacts have the same time constant, so that the voltage of an element is shared in the same way at all
 frequencies, V_i = V C_o/(C_i + C_o): the film that breaks down first is that with the smallest h (C_i + C_o)/C_o.
 
+Bands have the stated errors of films of balls; films of lines and those of formulas add none.
+
 Left out: shoulders of the rings (some 3 pF), cage, ribs, and how far open slices of rollers between ribs are.
 """
 
@@ -158,7 +160,8 @@ def _balls(point: Any, side: int, state: _State) -> Side:
     numbers = (balls.load, point.central_film, point.minimum_film, point.film_offset)
     load, central, minimum, offset = (values[side] for values in numbers)
     known = np.isfinite(central) & (load > 0.0)
-    whole = point_integral(ellipse, *(values[known] for values in (load, central, minimum, offset)), outer_gap)
+    films = central[known], minimum[known], offset[known]
+    whole = point_integral(ellipse, load[known], *films, outer_gap)
     pressure = np.asarray(ellipse.max_pressure(load[known]))
     error = float(np.nan_to_num(point.film_errors[side, :2]).sum())
     zone = under_pressure(state.permittivity, state.lubricant, state.temperature, pressure, "point")
@@ -180,9 +183,9 @@ def _lines(contact: LineContact, load: FloatArray, films: Any, gap: FloatArray, 
     )
     between = gap[~known]
     slices = _side(known, found, between, VACUUM * state.permittivity * open_line(contact.radius, between))
-    sums = (length * values.sum(axis=1) for values in slices[:3])
+    total, low, high = (length * values.sum(axis=1) for values in (slices.capacitance, slices.low, slices.high))
     films_of = np.where(known | ~known.any(axis=1)[:, None], slices.film, np.inf).min(axis=1)
-    return Side(*sums, films_of, known.any(axis=1))
+    return Side(total, low, high, films_of, known.any(axis=1))
 
 
 def _rollers(point: BearingPoint, side: int, state: _State) -> Side:
@@ -211,11 +214,11 @@ def _gaps(approach: FloatArray, films: FloatArray) -> FloatArray:
 
 def _side(known: BoolArray, found: ContactElectrics, gap: FloatArray, opened: FloatArray) -> Side:
     """Contacts that carry on films that are known, and open ones by their gaps and capacitances."""
-    numbers = []
-    for loaded, empty in (
-        (found.capacitance, opened), (found.low, opened), (found.high, opened), (found.minimum_film, gap)
-    ):  # fmt: skip
+
+    def whole(loaded: FloatArray, empty: FloatArray) -> FloatArray:
         values = np.empty(known.shape)
         values[known], values[~known] = loaded, empty
-        numbers.append(values)
-    return Side(*numbers, known)
+        return values
+
+    low, high, film = whole(found.low, opened), whole(found.high, opened), whole(found.minimum_film, gap)
+    return Side(whole(found.capacitance, opened), low, high, film, known)

@@ -49,7 +49,7 @@ class ContactElectrics:
     @property
     def breakdown(self) -> FloatArray:
         """Band of the voltage at which the film breaks down, (..., 2) [V]."""
-        return self.minimum_film[..., None] * np.array(FIELDS)
+        return np.asarray(self.minimum_film[..., None] * np.array(FIELDS))
 
 
 def point_capacitance(
@@ -98,8 +98,8 @@ def point_capacitance(
     F, u = np.broadcast_arrays(np.asarray(load, dtype=float), np.asarray(speed, dtype=float))
     films = shipped_point_table().films(ellipse, lubricant, F, u, temperature)
     known = films.central_film > 0.0
-    numbers = (F, films.central_film, films.minimum_film, films.film_offset)
-    whole = point_integral(ellipse, *(x[known] for x in numbers), gap)
+    central, minimum, offset = (x[known] for x in (films.central_film, films.minimum_film, films.film_offset))
+    whole = point_integral(ellipse, F[known], central, minimum, offset, gap)
     # the logarithm beside the zone moves by at most a relative change of the film
     wrong = films.errors["central_film"][known] + films.errors["film_offset"][known]
     pressure = np.asarray(ellipse.max_pressure(F[known]))
@@ -197,5 +197,5 @@ def _placed(found: ContactElectrics, known: npt.NDArray[np.bool_]) -> ContactEle
         out[known] = values
         return out
 
-    numbers = (found.capacitance, found.low, found.high, found.minimum_film)
-    return ContactElectrics(*map(whole, numbers), found.time_constant)
+    low, high, minimum = map(whole, (found.low, found.high, found.minimum_film))
+    return ContactElectrics(whole(found.capacitance), low, high, minimum, found.time_constant)

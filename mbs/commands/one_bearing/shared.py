@@ -424,14 +424,15 @@ def read_dielectric(text: str | None, problems: list[str]) -> Dielectric | None:
     permittivity = table.number("value", 1.0, LARGEST, required=True)
     known_at = table.quantity("at", "K", *OIL_TEMPERATURES, TEMPERATURE)
     conductivity = table.quantity("conductivity", "S/m", *CONDUCTIVITIES, Display("S/m"))
-    outlet = table.choice("outlet", OUTLETS)
+    chosen = table.choice("outlet", OUTLETS)
     gap = table.quantity("outer_gap", "m", 1e-7, 1e-2, MICROMETRE)
     table.close()
     problems += noted
     if noted or permittivity is None:
         return None
     try:
-        return Dielectric(permittivity, known_at, conductivity, outlet or "parallel", gap)
+        outlet = next((one for one in OUTLETS if one == chosen), OUTLETS[0])
+        return Dielectric(permittivity, known_at, conductivity, outlet, gap)
     except InputError as error:
         problems += [f"{option}: {problem}" for problem in error.problems]
         return None
