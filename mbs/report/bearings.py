@@ -15,6 +15,7 @@ from ehdmaps.units import SPEED
 from mbs.bearings.films import ContactState
 from mbs.bearings.force_at_point import RollerLoads
 from mbs.model.on_rings import ring_matrices
+from mbs.output.state_text import life_lines
 from mbs.report.examination import Examination
 from mbs.report.located import clean, contact_rows, located_matrix
 from mbs.scene.assembly import ring_motions
@@ -43,6 +44,7 @@ def bearings(found: Examination) -> Iterator[Markup]:
         moves = 1e6 * motion[1:3]
         path = float(np.hypot(*moves))
         inner, outer = contacts.sides
+        lives = life_lines(bearing, bearing.bearing.geometry, rollers, balance.operation)
         rows = [
             ("force on the inner ring", f"{shown(FORCE, size)} (y {_part(force[1], size)}, z {_part(force[2], size)})"),
             (
@@ -53,6 +55,7 @@ def bearings(found: Examination) -> Iterator[Markup]:
             ("loaded rollers", f"{loaded(rollers).size} of {rollers.load.size} (above 1 % of the highest load)"),
             ("highest roller load", shown(FORCE, float(rollers.load.max()))),
             *contact_rows(contacts, found.statics.losses[index], "rollers", model.surface),
+            *(("life", line.strip()) for line in lives),
         ]
         title = f"Loads of the rollers of bearing {index + 1}"
         yield joined(

@@ -19,7 +19,7 @@ from mbs.bearings.contact_report import BearingContacts, RollingLoss
 from mbs.bearings.locating.locating_element import LocatingElement, Settled
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.output.one_bearing.located import located
-from mbs.output.state_text import DAMPINGS, STIFFNESSES, loss_words
+from mbs.output.state_text import DAMPINGS, STIFFNESSES, life_lines, loss_words
 from mbs.report.examination import Examination
 from mbs.scene.fields import FORCE
 
@@ -84,6 +84,7 @@ def located_bearings(found: Examination) -> Iterator[Markup]:
             (f"highest {one} load", shown(FORCE, float(loads[0].max()))),
             *own.last,
             *contact_rows(contacts, loss),
+            *(("life", line.strip()) for line in life_lines(element, at.force.geometry, at.loads, balance.operation)),
         ]
         each = [
             (

@@ -133,7 +133,10 @@ def test_a_scene_with_dry_contacts(here, capsys, monkeypatch):
     assert not re.search(r"\b(nan|inf|None)\b", report.words)
     # what `mbs statics` and `mbs modes` print
     assert main(["statics", "mine.toml", *dry]) == 0
-    loads = re.search(r"the most with ([0-9.]+) N", capsys.readouterr().out)
+    statics = capsys.readouterr().out
+    life = re.search(r"L10r \S+ million turns", statics)
+    assert life and life[0] in report.words
+    loads = re.search(r"the most with ([0-9.]+) N", statics)
     assert loads and f"{float(loads[1]):.3g} N" in report.words
     assert main(["modes", "mine.toml", *dry]) == 0
     first = re.search(r"^ +1 +([0-9.]+) ", capsys.readouterr().out, re.MULTILINE)
