@@ -10,6 +10,7 @@ from typing import Any
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.solids import NO_SOLIDS, SolidsKeys
+from ehdmaps.jobs.tolerances import Tolerance
 from ehdmaps.maps.backbone_plan import STEPS, Steps
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry
@@ -96,6 +97,8 @@ class Job:
         What the job says of its solids: dimensions for finite elements, and what they found.
     assumed : tuple of str
         What the job leaves to the program, in words: oil, axes, solver.
+    tolerances : mapping of str to Tolerance
+        Half-widths of what is not known, by keys of [tolerances]: they have bands in words, and change no point.
     """
 
     name: str
@@ -117,6 +120,7 @@ class Job:
     corrected_by: CorrectedBy | None = None
     solids: SolidsKeys = NO_SOLIDS
     assumed: tuple[str, ...] = field(default=(), compare=False)
+    tolerances: Mapping[str, Tolerance] = field(default_factory=dict, compare=False)
 
     @classmethod
     def build(

@@ -18,6 +18,7 @@ from ehdmaps.jobs.problem import LOAD_AXIS, TEMPERATURE_AXIS, read_axis, read_co
 from ehdmaps.jobs.solids import NO_SOLIDS, check_solids, read_solids
 from ehdmaps.jobs.supply import read_supply, read_surface
 from ehdmaps.jobs.table import Table
+from ehdmaps.jobs.tolerances import OF_JOBS, read_tolerances
 from ehdmaps.maps.backbone_plan import STEP_LIMITS, STEPS, Steps
 from ehdmaps.netcdf_structure import DAMAGE, opened
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
@@ -37,7 +38,7 @@ FEWEST_CORRECTION_POINTS, MOST_CORRECTION_POINTS = 4, 200
 _ONE = "allowed: one of the two"
 _SIGNATURES = (b"CDF", b"\x89HDF")
 _PROBLEM = ("bearing", "contact", "material", "lubricant", "supply", "surface", "solids")
-_TABLES = ("schema", *_PROBLEM, "grid", "solver", "correction")
+_TABLES = ("schema", *_PROBLEM, "grid", "solver", "correction", "tolerances")
 
 
 def shipped_jobs() -> tuple[str, ...]:
@@ -184,6 +185,7 @@ def _job(
         _check_heat(top, oil, contacts, options, rest.get("corrected_by"))
     supply = top.optional("supply", "[supply]", read_supply)
     surface = top.optional("surface", "[surface]", read_surface)
+    tolerances = top.optional("tolerances", "[tolerances]", lambda section: read_tolerances(section, OF_JOBS))
 
     axes: list[tuple[float, ...] | None] = [None, None, None]
     grid = top.table("grid", "[grid]", required="a table with load, entrainment_speed and temperature")
@@ -214,6 +216,7 @@ def _job(
         solver=solver,
         solver_options=options,
         assumed=completed.assumed,
+        tolerances=tolerances or {},
         **rest,
     )
 

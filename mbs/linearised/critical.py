@@ -40,8 +40,9 @@ _UNDAMPED = 1e-9
 """Damping ratio up to which a mode has no finite response at its critical speed, to rounding."""
 
 _EVALUATIONS = 12
-_NARROWED = 3
-"""Times that speeds about a resonance are drawn closer."""
+_WIDE, _NARROWED = 0.02, 8
+"""A quarter of the range in which a resonance is sought first, as a part of its speed, and times that it is narrowed to
+a quarter about the largest motion, until its points are closer than an eighth of the width of the resonance."""
 
 _WIDEST = 0.1
 
@@ -273,12 +274,14 @@ def responses_between(
     for order in _orders(balances[0].system):
         found = [(speed, *answer(order, speed)) for speed in speeds.tolist()]
         for crossing, ratio in ((speed, ratio) for of, speed, ratio in crossings if of == order):
-            place, wide = crossing, min(max(ratio, _UNDAMPED), _WIDEST)
+            place, wide = crossing, _WIDE
             for _ in range(_NARROWED):
                 tried = np.clip(place * (1.0 + wide * np.array(AROUND)), known[0], known[-1])
                 around = [(speed, *answer(order, speed)) for speed in np.unique(tried).tolist()]
                 best = max(around, key=lambda one: float(np.linalg.norm(one[1])))
                 place, wide = best[0], 0.25 * wide
+                if wide < 0.25 * ratio:
+                    break
             found.append(best)
         motion = np.array([moved for _, moved, _ in found])
         forces = np.array([[force[1:3] for force in felt] for _, _, felt in found]).reshape(len(found), -1, 2)

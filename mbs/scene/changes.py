@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ehdmaps.errors import InputError, Problems
+from ehdmaps.jobs.tolerances import of_all
 from ehdmaps.physics.oil_supply import OilSupply
 from mbs.model.drive import DrivenSpeed
 from mbs.model.profiles import Advanced, Constant, Course, SpeedProfile
@@ -17,7 +18,6 @@ from mbs.scene.fields import HERTZ
 from mbs.scene.scene import Scene
 from mbs.scene.specs import HIGHEST_DAMPING_RATIO, BodySpec, FlexibleSpec, ShaftSpec
 from mbs.settings import RunUp
-from mbs.unknowns.tolerances import of_all
 
 
 def with_loads(scene: Scene, factor: float) -> Scene:

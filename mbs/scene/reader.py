@@ -17,6 +17,7 @@ from ehdmaps.jobs import table
 from ehdmaps.jobs.problem import AxisRule, read_axis, read_lubricant
 from ehdmaps.jobs.supply import read_supply, read_surface
 from ehdmaps.jobs.table import Table
+from ehdmaps.jobs.tolerances import Tolerance, read_tolerances
 from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.units import DAMPER, RPM, SPRING, TEMPERATURE, Display, closest, short
 from mbs.gears.pair import GearPair
@@ -45,7 +46,6 @@ from mbs.settings import (
     SweepRange,
 )
 from mbs.unknowns.statement import taken_out
-from mbs.unknowns.tolerances import Tolerance, read_tolerances
 
 MOST_POINTS = 1000
 """Points of a torque over speed."""

@@ -52,10 +52,11 @@ def job_page() -> str:
 
 
 def scene_page() -> str:
-    """The page of keys of scene files; tables that jobs have too are on the page of these."""
-    of_jobs = _words("job_keys.toml")
-    readings = {table: keys for table, keys in _joined(scene_readings()).items() if table not in of_jobs}
-    return _SCENE + _tables(readings, _words("scene_keys.toml"), "docs/scene_keys.toml")
+    """The page of keys of scene files; tables that jobs have too are on the page of these, but for other keys."""
+    of_jobs, words = _words("job_keys.toml"), _words("scene_keys.toml")
+    joined = _joined(scene_readings()).items()
+    readings = {table: keys for table, keys in joined if table not in of_jobs or table in words}
+    return _SCENE + _tables(readings, words, "docs/scene_keys.toml")
 
 
 def _words(name: str) -> Words:

@@ -57,7 +57,7 @@ name = "FVA3"
 [grid]
 entrainment_speed = ["1 m/s"]
 {_SOLVER}""",
-    f"[contact]\n[lubricant]\nviscosity_law = 'fva3'\n[grid]\nload = ['1 N/mm']\n{_SPEED}\n{_SOLVER}",
+    f"[tolerances]\n[contact]\n[lubricant]\nviscosity_law = 'fva3'\n[grid]\nload = ['1 N/mm']\n{_SPEED}\n{_SOLVER}",
     f"[lubricant]\nviscosity_law = 'barus'\n[grid]\n{_SPEED}\n{_SOLVER}",
 )
 BATCH = f"[batch]\noils = ['FVA3']\nestimates = ['NU206']\n[grid]\nentrainment_speed = ['1 m/s']\n{_SOLVER}"

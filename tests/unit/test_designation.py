@@ -11,7 +11,7 @@ import ehdmaps
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.cli import main
 from ehdmaps.jobs.defaults import bearing_source, designated_job
-from ehdmaps.jobs.estimate_bands import geometry_band, pressure_viscosity_band
+from ehdmaps.jobs.estimate_bands import geometry_band, oil_bands
 from ehdmaps.jobs.job_text import lubricant_keys
 from ehdmaps.jobs.reader import parse_job, read_job
 from ehdmaps.jobs.solvers import of_map
@@ -81,7 +81,9 @@ def _width(key):
 
 def test_errors_are_stated_by_estimates_alone():
     with pytest.raises(InputError, match=r"bearing 'NU308': states no errors; allowed: a bearing that `estimate` made"):
-        geometry_band(SimpleNamespace(bearing=replace(BEARINGS["NU308"], estimated="by somebody")), None, None)
+        geometry_band(
+            SimpleNamespace(bearing=replace(BEARINGS["NU308"], estimated="by somebody"), tolerances={}), None, None
+        )
     assert list(estimated_parts(BEARINGS["NU308"])) == []
 
 
@@ -197,7 +199,8 @@ def test_bands_follow_the_spread():
     """By film formulas a film goes with the root of alpha or a little more; k nearly with the length of the rollers."""
     job = parse_job(SMALL + '[solver]\nname = "formula"\n', "job", "job.toml")
     point = OperatingPoint(2e4, 2.0, 333.15)
-    alpha = pressure_viscosity_band(job, point, of_map(job))
+    [(words, alpha)] = oil_bands(job, point, of_map(job))
+    assert words == "estimated pressure-viscosity"
     assert 0.3 * 0.17 < alpha.film < 0.7 * 0.17 and alpha.stiffness < 0.02
     wide = geometry_band(job, point, of_map(job))
     close = geometry_band(
@@ -205,9 +208,12 @@ def test_bands_follow_the_spread():
     )
     assert 0.15 < wide.stiffness < 0.3 and close.stiffness < 0.7 * wide.stiffness
     known = read_job("NU308, FVA3")
-    assert (
-        geometry_band(known, point, of_map(job)) is None and pressure_viscosity_band(known, point, of_map(job)) is None
-    )
+    assert geometry_band(known, point, of_map(job)) is None and not list(oil_bands(known, point, of_map(job)))
+    stated = parse_job(SMALL + '[solver]\nname = "formula"\n[tolerances]\npressure_viscosity = "5 %"\n', "job", "")
+    [(words, small)] = oil_bands(stated, point, of_map(job))
+    assert words == "pressure-viscosity, +-5 %" and small.film < 0.4 * alpha.film  # 5 of 17 %
+    with pytest.raises(InputError, match="preload: unknown key"):
+        parse_job(SMALL + '[tolerances]\npreload = "5 %"\n', "job", "")
 
 
 def run(command, words):

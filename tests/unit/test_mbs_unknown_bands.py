@@ -11,6 +11,7 @@ import pytest
 import xarray as xr
 
 from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.jobs.tolerances import Tolerance
 from mbs.analyses.modes import modes
 from mbs.analyses.sweep import SweepSettings, critical
 from mbs.cli import main
@@ -23,7 +24,6 @@ from mbs.settings import SweepRange
 from mbs.unknowns import held_open
 from mbs.unknowns.looks import Band, Term, band
 from mbs.unknowns.of_variables import variable_bands
-from mbs.unknowns.tolerances import Tolerance
 from mbs.unknowns.unknown import Unknown
 from tests.benchmarks import coverage
 from tests.benchmarks.coverage.draws import drawn, truth

@@ -15,6 +15,7 @@ from ehdmaps.choices import supply_from_text
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError, Problems
 from ehdmaps.jobs import solvers
+from ehdmaps.jobs.estimate_bands import band_lines
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.problem import RING_SPEED_AXIS, SPEED_AXIS
 from ehdmaps.jobs.reader import read_job
@@ -79,8 +80,10 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         point_record(solution, contact, job, point, frequency)
         for solution, contact in zip(solutions, job.contacts, strict=True)
     ]
-    text = records_json(records) if arguments.json else point_table(job, records, point, request.length)
-    return text, _exit_status(records)
+    if arguments.json:
+        return records_json(records), _exit_status(records)
+    bands = band_lines(job, point) if job.tolerances and frequency == 0.0 else ()
+    return "\n".join([point_table(job, records, point, request.length), *bands]), _exit_status(records)
 
 
 def _over_frequency(arguments: argparse.Namespace, request: _Request) -> tuple[str, int]:

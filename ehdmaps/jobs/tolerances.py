@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -157,16 +157,22 @@ def split(text: str) -> tuple[str, str]:
     return value.strip(), tolerance.strip()
 
 
-def read_tolerances(section: Table) -> dict[str, Tolerance]:
+OF_JOBS = ("temperature", "viscosity", "pressure_viscosity", "geometry")
+"""What a job has of these."""
+
+
+def read_tolerances(section: Table, names: Sequence[str] = tuple(TOLERATED)) -> dict[str, Tolerance]:
     """Read [tolerances]; whoever calls closes it.
 
     Parameters
     ----------
     section : Table
         The table.
+    names : sequence of str
+        Its keys.
     """
     found = {}
-    for name in TOLERATED:
+    for name in names:
         text = section.get(name)
         if name not in section:
             continue
