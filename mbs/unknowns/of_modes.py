@@ -116,7 +116,7 @@ class ModeLook:
 
     @property
     def numerics(self) -> FloatArray:
-        """What numerics leave open of them."""
+        """Parts that numerics leave open of them."""
         bands = self.modes.bands
         return np.zeros((2, self.chosen.size)) if bands is None else np.array([part[self.chosen] for part in bands[:2]])
 

@@ -43,7 +43,7 @@ class Responses(NamedTuple):
     Attributes
     ----------
     values : array, shape (responses,)
-        As they are printed, in SI.
+        Values as they are printed, in SI.
     largest : callable
         Finds them of responses of all orders.
     """
