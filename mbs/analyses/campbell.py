@@ -20,7 +20,7 @@ from ehdmaps.errors import AnalysisError, InputError, Problems
 from ehdmaps.figures import typeset
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.law_errors import LawChange
-from mbs.analyses.case import Case, Failed, Progress, as_cases, side_by_side, silent
+from mbs.analyses.case import Case, Failed, Progress, as_cases, side_by_side
 from mbs.analyses.film_errors import notable_from
 from mbs.analyses.operating import held, operating, settled, states_of
 from mbs.analyses.ramp import recorded_run, rehearsed, run_course, silent_run
@@ -39,7 +39,7 @@ from mbs.output.campbell_table import campbell_dataset, of_sensors
 from mbs.output.files import described
 from mbs.output.model_text import clearance_text, common_supply, temperature_text
 from mbs.output.results import BAND, STEP_ERROR, with_states
-from mbs.scene.assembly import Model, choice_attributes, law_attributes
+from mbs.scene.assembly import Model, law_attributes, laws_attributes
 from mbs.scene.scene import Scene
 from mbs.settings import CAGE_ANGLES, CampbellSettings, RunUp
 from mbs.spectral.campbell import RunUpSpectra, run_up_spectra
@@ -372,7 +372,7 @@ def campbell(
     cases = tuple(dataclasses.replace(case, model=held(case.model)) for case in cases)
     rehearsed(settings, course, orders)
     look = _Look(settings, tuple(seen), course, tuple(orders))
-    runs, failed = _runs(cases, look, progress or silent, with_modes, keep_partial, bands, workers)
+    runs, failed = _runs(cases, look, progress, with_modes, keep_partial, bands, workers)
     if not runs:
         raise AnalysisError("\n".join(f"warning: {line}" for line in failed))
     labels, known = [entry.case.label for entry in runs], runs[0].spectra[0].campbell.speeds
@@ -388,9 +388,8 @@ def campbell(
     dataset = of_sensors(parts)
     dataset = with_states(dataset, [states_of(entry.case.model) for entry in runs], ("law",))
     # The dataset says of each law what it is.
-    laws = "; ".join(f"{entry.case.label}: {entry.case.model.law}" for entry in runs)
-    supplies = choice_attributes([(entry.case.label, entry.case.model) for entry in runs])
-    dataset = described(dataset, **{**law_attributes(runs[0].case.model), "law": laws, **supplies})
+    laws = laws_attributes(labels, [entry.case.model for entry in runs])
+    dataset = described(dataset, **{**law_attributes(runs[0].case.model), **laws})
     dataset = Judged([(entry.case.label, entry.findings) for entry in runs]).marked(dataset)
     return CampbellResult(settings, tuple(seen), course, tuple(orders), tuple(runs), tuple(failed), dataset)
 
@@ -419,7 +418,7 @@ class _Look:
 def _runs(
     cases: Sequence[Case],
     look: _Look,
-    tell: Progress,
+    progress: Progress | None,
     with_modes: bool,
     keep_partial: bool,
     bands: int,
@@ -435,7 +434,6 @@ def _runs(
         for index, change in enumerate(changes)
         for signs in (None, *(SIGNS[:bands] if change is not None else ()))
     ]
-    total = each * len(pieces)
     runs: dict[int, LawRun] = {}
     lost: dict[int, str] = {}
     levels: dict[int, list[FloatArray]] = {}
@@ -448,14 +446,8 @@ def _runs(
             raise AnalysisError(lost[index])
         return _sum_levels(_one(with_changed_laws(cases[index].model, change, signs), look, told, False, False).spectra)
 
-    tell(0, total)
-    made = side_by_side(
-        work,
-        [each] * len(pieces),
-        workers,
-        lambda done: tell(done, total),
-        lambda piece: cases[pieces[piece][0]].label,
-    )
+    sizes = [each] * len(pieces)
+    made = side_by_side(work, sizes, workers, progress, lambda piece: cases[pieces[piece][0]].label)
     stopped: list[str] = []
     try:
         for (index, signs), found in zip(pieces, made, strict=True):

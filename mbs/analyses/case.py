@@ -124,7 +124,11 @@ class _Bug:
 
 
 def side_by_side(
-    work: Work[Result], sizes: Sequence[int], workers: int, told: Callable[[int], None], label: Callable[[int], str]
+    work: Work[Result],
+    sizes: Sequence[int],
+    workers: int,
+    progress: Progress | None,
+    label: Callable[[int], str],
 ) -> Iterator[Result | Failed]:
     """Compute all cases; results come in the order of the cases.
 
@@ -136,8 +140,8 @@ def side_by_side(
         How much there is to do of each case; one that has ended counts as done.
     workers : int
         How many processes at most.
-    told : callable
-        Told how much is done of all cases together, in the units of `work`.
+    progress : callable, optional
+        Called with how much is done of all cases together, in the units of `work`, and how much there is.
     label : callable
         Name of a case, for messages.
 
@@ -151,6 +155,12 @@ def side_by_side(
     KeyboardInterrupt
         On Ctrl-C, after all processes have been ended.
     """
+    tell, total = progress or silent, sum(sizes)
+    tell(0, total)
+
+    def told(done: int) -> None:
+        tell(done, total)
+
     if min(workers, len(sizes)) <= 1 or "fork" not in multiprocessing.get_all_start_methods():
         yield from _one_by_one(work, sizes, told)
         return

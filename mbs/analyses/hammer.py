@@ -229,7 +229,6 @@ def hammers(
     >>> hammers(cases, HammerSettings(hits=1, duration=0.05)).labels
     ('hertz', 'constant:hertz')
     """
-    tell = progress or silent
     prepared: dict[int, _Prepared] = {}
     failed: dict[int, str] = {}
     found: dict[int, HammerResult] = {}
@@ -245,13 +244,11 @@ def hammers(
         except AnalysisError as error:
             lost(index, error)
     places = list(prepared)
-    sizes = [_size(prepared[index]) for index in places]
-    tell(0, sum(sizes))
     made = side_by_side(
         lambda place, told: _hit(prepared[places[place]], told),
-        sizes,
+        [_size(prepared[index]) for index in places],
         workers,
-        lambda done: tell(done, sum(sizes)),
+        progress,
         lambda place: cases[places[place]].label,
     )
     for index, each in zip(places, made, strict=True):

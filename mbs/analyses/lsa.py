@@ -26,7 +26,7 @@ from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.findings import Finding
 from mbs.output.files import described
-from mbs.output.results import linear_dataset, with_states
+from mbs.output.results import linear_dataset, of_laws, with_states
 from mbs.scene.assembly import Model, law_attributes, laws_attributes
 from mbs.scene.scene import Scene
 from mbs.settings import CAGE_ANGLES, check_cage_angles
@@ -305,17 +305,7 @@ def lsa_dataset(labels: Sequence[str], results: Sequence[LsaResult]) -> xr.Datas
     parts = [result.dataset for result in results]
     if len(parts) == 1:
         return parts[0]
-    shared = [name for name in ("quantity", "amplitude") if name in parts[0]]
-    law = xr.DataArray(np.array(labels, dtype=np.str_), dims="law", name="law")
-    joined = xr.concat(
-        [part.drop_vars(shared) for part in parts],
-        law,
-        data_vars="all",
-        coords="minimal",
-        compat="override",
-        join="outer",
-        combine_attrs="override",
-    ).assign({name: parts[0][name] for name in shared})
+    joined = of_laws(labels, parts, ("quantity", "amplitude"))
     # Joined names of states are sorted; those of the law with most of them are in their order.
     most = max(parts, key=lambda part: part.sizes["state"])
     joined = joined.reindex(state=most["state"], of_state=most["of_state"])

@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
 import xarray as xr
 
 from ehdmaps.compiling import cpu_seconds
@@ -25,8 +24,8 @@ from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.findings import Finding, is_unsound
 from mbs.output.files import described
-from mbs.output.results import STEP_ERROR, run_dataset, with_energy, with_states
-from mbs.scene.assembly import Model, choice_attributes, law_attributes
+from mbs.output.results import STEP_ERROR, of_laws, run_dataset, with_energy, with_states
+from mbs.scene.assembly import Model, law_attributes, laws_attributes
 from mbs.scene.scene import Scene
 from mbs.settings import RunUp
 from mbs.timedata.netcdf_file import signal_variables
@@ -249,7 +248,6 @@ def runups(
     >>> found.dataset["signal"].dims
     ('law', 'signal_time', 'sensor')
     """
-    tell = progress or silent
     sizes = [_steps(_course(case.model)) for case in cases]
     runs: dict[int, RunUpResult] = {}
     failed: list[str] = []
@@ -257,10 +255,9 @@ def runups(
         lambda index, told: _run(cases[index].model, told, states=states),
         sizes,
         workers,
-        lambda done: tell(done, sum(sizes)),
+        progress,
         lambda index: cases[index].label,
     )
-    tell(0, sum(sizes))
     try:
         for index, found in enumerate(made):
             if not isinstance(found, Failed):
@@ -285,20 +282,11 @@ _SHARED = ("speed", "angle", "quantity", "signal_unit", "signal_speed", "signal_
 def _of_laws(found: RunUps) -> xr.Dataset:
     """The results of all laws over the dim law; what a law has not is not a number."""
     parts = [run.dataset for run in found.runs]
-    own = [part.drop_vars([name for name in _SHARED if name in part]) for part in parts]
-    law = xr.DataArray(np.array(found.labels, dtype=np.str_), dims="law", name="law")
-    joined = xr.concat(
-        own, law, data_vars="all", coords="minimal", compat="override", join="outer", combine_attrs="override"
-    )
-    for name in _SHARED:
-        if name in parts[0]:
-            joined[name] = parts[0][name]
     counts = {
         key: sum(int(part.attrs[key]) for part in parts) for key in ("steps", "steps_halved", "newton_iterations")
     }
-    words = "; ".join(f"{label}: {run.model.law}" for label, run in zip(found.labels, found.runs, strict=True))
-    supplies = choice_attributes([(label, run.model) for label, run in zip(found.labels, found.runs, strict=True)])
-    return joined.assign_attrs({**parts[0].attrs, **counts, "law": words, **supplies})
+    laws = laws_attributes(found.labels, [run.model for run in found.runs])
+    return of_laws(found.labels, parts, _SHARED).assign_attrs({**parts[0].attrs, **counts, **laws})
 
 
 def runup_figure(

@@ -17,7 +17,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.figures import typeset
 from ehdmaps.units import RPM
-from mbs.analyses.case import Case, Failed, Progress, as_cases, side_by_side, silent
+from mbs.analyses.case import Case, Failed, Progress, as_cases, side_by_side
 from mbs.analyses.film_errors import notable_from
 from mbs.analyses.losses import losses_over_speed
 from mbs.analyses.operating import operating, settled, states_of
@@ -43,7 +43,7 @@ from mbs.output.files import described
 from mbs.output.model_text import clearance_text, common_supply, temperature_text
 from mbs.output.results import with_states
 from mbs.output.sweep_data import LARGEST, critical_dataset, largest_responses, sweep_dataset
-from mbs.scene.assembly import Model, choice_attributes, law_attributes, laws_attributes
+from mbs.scene.assembly import Model, law_attributes, laws_attributes
 from mbs.scene.scene import Scene
 from mbs.settings import CAGE_ANGLES, SweepRange
 
@@ -242,8 +242,6 @@ def sweep(
     speeds = settings.speeds or cases[0].model.scene.sweep
     if speeds is None:
         raise InputError(sweep_problems(cases[0].model.scene))
-    tell = progress or silent
-    tell(0, len(cases))
     models = settled([case.model for case in cases], speeds.end)
     cases = tuple(dataclasses.replace(case, model=model) for case, model in zip(cases, models, strict=True))
     found: list[Sweep] = []
@@ -251,7 +249,7 @@ def sweep(
         lambda index, _: _one(cases[index], speeds, settings.cage_angles),
         [1] * len(cases),
         workers,
-        lambda done: tell(done, len(cases)),
+        progress,
         lambda index: cases[index].label,
     ):
         if isinstance(entry, Failed):
@@ -305,7 +303,6 @@ def _dataset(cases: Sequence[Case], found: Sequence[Sweep]) -> xr.Dataset:
         [case.clearance for case in cases],
         [case.load_factor for case in cases],
     )
-    named = [f"{case.label}: {case.model.law}" for case in cases] if len(cases) > 1 else [cases[0].model.law]
     models = [[operating(case.model, speed) for speed in found[0].speeds.tolist()] for case in cases]
     losses = [
         losses_over_speed(there, entry.speeds, entry.displacement) for there, entry in zip(models, found, strict=True)
@@ -317,9 +314,9 @@ def _dataset(cases: Sequence[Case], found: Sequence[Sweep]) -> xr.Dataset:
         values = np.stack([both[part] for both in losses])
         attributes = {"units": unit, "long_name": f"{words}; films only; none of laws without rolling forces"}
         dataset[name] = (("case", "speed", "bearing"), values, attributes)
-    supplies = choice_attributes([(case.label, case.model) for case in cases])
+    laws = laws_attributes([case.label for case in cases], [case.model for case in cases]) if cases[1:] else {}
     dataset = with_states(dataset, [[states_of(there) for there in row] for row in models], ("case", "speed"))
-    return described(dataset, **{**law_attributes(cases[0].model), "law": "; ".join(named), **supplies})
+    return described(dataset, **{**law_attributes(cases[0].model), **laws})
 
 
 @dataclass(frozen=True, eq=False)
@@ -479,10 +476,7 @@ def _swept(model: Model, settings: SweepSettings) -> _Swept:
     """Modes and critical speeds of one model."""
     speeds = settings.speeds or model.scene.sweep
     if speeds is None:
-        raise InputError(
-            f'{model.scene.name}: no speeds; allowed: --speed "500 rpm" "2500 rpm" 40, or a table [sweep] in the '
-            "scene with from, to and points"
-        )
+        raise InputError(sweep_problems(model.scene))
     if not turning_places(model.system):
         raise InputError(
             f"{model.scene.name}: no body spins, so that no speed is critical; allowed: a body with a spin, such as "

@@ -18,7 +18,7 @@ import xarray as xr
 
 from ehdmaps.arrays import FloatArray, variable
 from ehdmaps.errors import AnalysisError, InputError, Problems
-from mbs.analyses.case import Failed, Progress, side_by_side, silent
+from mbs.analyses.case import Failed, Progress, side_by_side
 from mbs.analyses.operating import held
 from mbs.analyses.ramp import recorded_run, run_course, silent_run
 from mbs.analyses.sensors import followed_orders
@@ -205,7 +205,7 @@ def variants(
     settings = settings or scene.campbell
     sensors = tuple(sensor for sensor in scene.sensors if sensor.quantity == "acceleration")
     runs, pairs = _planned(scene, laws, variations, clearance, settings, sensors)
-    outcomes = _made(runs, sensors, settings, progress or silent, keep_partial, workers)
+    outcomes = _made(runs, sensors, settings, progress, keep_partial, workers)
     rows = tuple(_variant(change, pair, outcomes) for change, pair in zip([None, *variations], pairs, strict=True))
     if not any(row.differences for row in rows):
         raise AnalysisError("\n".join(f"warning: {row.words}: {row.problem}" for row in rows))
@@ -300,19 +300,17 @@ def _made(
     runs: Sequence[_Run],
     sensors: tuple[Sensor, ...],
     settings: CampbellSettings,
-    tell: Progress,
+    progress: Progress | None,
     keep_partial: bool,
     workers: int,
 ) -> list[_Outcome]:
     """Make all runs, side by side; fewer where they were stopped."""
-    total = sum(run.samples for run in runs)
-    tell(0, total)
     found: list[_Outcome] = []
     outcomes = side_by_side(
         lambda index, told: _outcome(runs[index], sensors, settings, told),
         [run.samples for run in runs],
         workers,
-        lambda done: tell(done, total),
+        progress,
         lambda index: f"run {index + 1} of {len(runs)}",
     )
     try:

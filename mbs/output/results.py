@@ -255,6 +255,26 @@ def _is_rigid_in_x(model: Model, body: str) -> bool:
     return not any(np.any(frame.transform[0]) for frame in model.system.body(body).frames.values())
 
 
+def of_laws(labels: Sequence[str], parts: Sequence[xr.Dataset], shared: Sequence[str]) -> xr.Dataset:
+    """The results of several laws over the dim law; what a law has not is not a number.
+
+    Parameters
+    ----------
+    labels : sequence of str
+        What each law is called.
+    parts : sequence of xarray.Dataset
+        A result each.
+    shared : sequence of str
+        Variables that are the same whatever the law, where there are such.
+    """
+    law = xr.DataArray(np.array(labels, dtype=np.str_), dims="law", name="law")
+    own = [part.drop_vars(shared, errors="ignore") for part in parts]
+    joined = xr.concat(
+        own, law, data_vars="all", coords="minimal", compat="override", join="outer", combine_attrs="override"
+    )
+    return joined.assign({name: parts[0][name] for name in shared if name in parts[0]})
+
+
 BAND = "band, either way, by errors of known size, of"
 """How datasets call the bands; they are NaN where none is stated."""
 
