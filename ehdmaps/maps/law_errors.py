@@ -333,7 +333,8 @@ class LawErrors:
             single[i] = k + more.stiffness, c + more.damping, offset + more.film_offset, soft, lossy
         compliance = np.array([one[3] for one in single])
         loss = np.array([one[4] for one in single])
-        weights = compliance / compliance.sum(axis=0)
+        whole = compliance.sum(axis=0)
+        weights = compliance / np.where(whole > 0.0, whole, np.nan)  # of a hole nothing is known
         loss_weights = loss / np.maximum(loss.sum(axis=0), 1e-300)
         by_stiffness = np.array([one[0] for one in single])
         stiffness = np.sum(weights * by_stiffness, axis=0)

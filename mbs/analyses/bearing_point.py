@@ -287,6 +287,8 @@ def _between_points(
     shares = wrong / np.maximum(whole, 1e-300)
     if np.all(shares < _NOTABLE):
         return ""
+    if not np.all(np.isfinite(shares)):
+        return "how wrong stiffness and damping are is not known: the map has holes there; `ehdmaps show` says where"
     of_k, of_c = (f"{100.0 * share:.2g} %" for share in shares)
     return (
         f"stiffness along the load may be wrong by {of_k}, damping by {of_c}: by the errors of the map, and by "
