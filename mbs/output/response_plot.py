@@ -162,8 +162,8 @@ def _magnitude(panel: Axes, case: Curves, pair: tuple[int, int], unit: float, **
         at, level = case.peaks.frequency.of(of), case.peaks.level.of(of)
         high = size[case.peaks.places[of, 0]]
         falls, rises = (high * np.abs(1.0 - 10.0 ** (part / 20.0)) for part in (-level.fall, level.rise))
-        reach = {"xerr": (at.fall, at.rise), "yerr": (falls, rises)}
-        panel.errorbar(at.value, high, **reach, fmt="none", ecolor=style["color"], elinewidth=0.8, capsize=2.0)
+        reach = (falls, rises), (at.fall, at.rise)
+        panel.errorbar(at.value, high, *reach, fmt="none", ecolor=style["color"], elinewidth=0.8, capsize=2.0)
     if case.level_error is not None:
         factor = 10.0 ** (case.level_error[:, pair[0], pair[1]] / 20.0)
         panel.fill_between(

@@ -50,7 +50,10 @@ def _physics(arguments: argparse.Namespace, model: Model) -> Iterator[str]:
         if verdict.matters:
             yield f"  {verdict.line}"
     if model.balls and model.scene.lubricant is not None:
-        found = {one.films.conditions.words: None for one in model.balls if one.films is not None}
+        from mbs.scene.locating.ball_films import FilmsOfPoints
+
+        given = (one.films for one in model.balls)
+        found = {films.conditions.words: None for films in given if isinstance(films, FilmsOfPoints)}
         words = f"{next(iter(found), '')}, " if found else ""
         yield f"  films of balls are {words}Newtonian; what that leaves out is not weighed"
 
