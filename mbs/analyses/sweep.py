@@ -356,7 +356,7 @@ class CriticalResult:
 
         highest = 1.05 * max((abs(entry.eigenvalue) for entry in self.found), default=0.0) / (2.0 * math.pi)
         own = Responses(self._row(self.responses), self._row) if self.responses else None
-        return bands_over_speed(self.model, self.sweep, highest, own)
+        return bands_over_speed(self.model, self.sweep, highest, own, self.found)
 
     @cached_property
     def bounds(self) -> FloatArray:
@@ -364,9 +364,8 @@ class CriticalResult:
 
         They are low and high speed, low and high ratio, 90 % of what is not known; found when they are asked for.
         """
-        from mbs.unknowns.over_speed import critical_bounds
-
-        return critical_bounds(self.bands, self.sweep, self.found) if self.found else np.zeros((0, 4))
+        own = self.bands.critical
+        return np.array([own.low[0], own.high[0], own.low[1], own.high[1]]).T
 
     @property
     def largest(self) -> Mapping[str, Band]:

@@ -1,14 +1,13 @@
 """Bands of modes and critical speeds over speed: looks at three speeds, relative bands between them.
 
 What is open moves a mode at neighbouring speeds by nearly equal parts, so that the parts at the first, the middle and
-the last speed are interpolated over the speed. A critical speed is where order times speed meets the frequency f of a
-mode: to first order it moves by the part of f over 1 - s, with the slope s = d ln f/d ln Omega there, since the mode
-moves with the speed as well.
+the last speed are interpolated over the speed. A critical speed is where the mode, changed by these parts, meets its
+order; its damping ratio is that of the mode there. The largest responses over speed to loads that turn are found anew
+in each look, with what the three equilibria have between their speeds and each resonance where the look has it.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -32,6 +31,8 @@ from mbs.unknowns.of_modes import ModeBands, ModeLook, banded, looked_at
 
 _SAME = 1e-4
 """Part of an eigenvalue within which a mode of a sweep and one of its speed alone are one."""
+
+_LEAST = 1e-12
 
 _FINE = 401
 """Speeds between which it is looked where modes meet orders."""
@@ -66,6 +67,8 @@ class SpeedBands:
         Place among these of each mode of the sweep; -1 where it has none.
     frequency, damping_ratio : array, shape (2, speeds, tracks)
         Parts of fall and rise, both >= 0.
+    critical : Band
+        Bands of critical speeds [rad/s] and of the damping ratios there, shape (2, critical).
     responses : Band
         Bands of the largest responses, in the order of `Responses.values`.
     """
@@ -75,6 +78,7 @@ class SpeedBands:
     tracks: tuple[IntArray, ...]
     frequency: FloatArray
     damping_ratio: FloatArray
+    critical: Band
     responses: Band
 
     @property
@@ -83,7 +87,13 @@ class SpeedBands:
         return self.at[-1].told
 
 
-def bands_over_speed(model: Model, found: Sweep, highest: float, responses: Responses | None = None) -> SpeedBands:
+def bands_over_speed(
+    model: Model,
+    found: Sweep,
+    highest: float,
+    responses: Responses | None = None,
+    critical: Sequence[CriticalSpeed] = (),
+) -> SpeedBands:
     """Look at the modes of a sweep, and at responses, at its first, middle and last speed.
 
     Parameters
@@ -96,6 +106,8 @@ def bands_over_speed(model: Model, found: Sweep, highest: float, responses: Resp
         Frequency up to which modes have bands [Hz].
     responses : Responses, optional
         Largest responses to loads that turn, which have bands, too.
+    critical : sequence of CriticalSpeed
+        Critical speeds of the machine, which have bands, too.
     """
     count = found.speeds.size
     places = tuple(dict.fromkeys((0, count // 2, count - 1)))
@@ -106,10 +118,30 @@ def bands_over_speed(model: Model, found: Sweep, highest: float, responses: Resp
         own = modes(balance)
         looks.append(ModeLook(model, balance, own, banded(own, highest)))
         tracks.append(_places(found.damped.eigenvalues[place], own.eigenvalues[looks[-1].chosen]))
-    centre = np.concatenate([look.centre.reshape(-1) for look in looks])
-    largest = np.zeros(0) if responses is None else responses.values
-    numerics = np.concatenate([*(look.numerics.reshape(-1) for look in looks), np.zeros(largest.size)])
-    scale = np.ones(largest.size)
+    centres = [look.centre for look in looks]
+    known, owners = found.speeds[list(places)], [_track_of(found, entry) for entry in critical]
+    orders = sorted({abs(load.order) for load in looks[0].balance.system.turning})
+
+    def more(balances: Sequence[Equilibrium], values: Sequence[FloatArray]) -> FloatArray:
+        """Critical speeds and damping ratios there, then the largest responses."""
+        course = _course(found, known, centres, values, tracks)
+        met = np.full((2, len(critical)), np.nan)
+        for k, (entry, track) in enumerate(zip(critical, owners, strict=True)):
+            crossings = course.crossings(entry.order, track)
+            if crossings:
+                met[:, k] = min(crossings, key=lambda one: abs(one[0] - entry.speed))
+        if responses is None:
+            return met.reshape(-1)
+        where = [
+            (order, *one)
+            for order in orders
+            for track in range(tracks[0].size)
+            for one in course.crossings(order, track)
+        ]
+        try:
+            return np.append(met, responses.largest(responses_between(balances, found.speeds, where)))
+        except np.linalg.LinAlgError:
+            raise AnalysisError("responses: there is none at an undamped resonance") from None
 
     def look(scene: Scene, standing: bool) -> FloatArray:
         other = model.again(scene)
@@ -117,23 +149,21 @@ def bands_over_speed(model: Model, found: Sweep, highest: float, responses: Resp
         values = [
             one.paired(balance, modes(balance, errors=False)) for one, balance in zip(looks, balances, strict=True)
         ]
-        return np.concatenate([*(value.reshape(-1) for value in values), scale * answered(balances, values)])
+        return np.concatenate([*(value.reshape(-1) for value in values), scale * more(balances, values)])
 
-    def answered(balances: Sequence[Equilibrium], values: Sequence[FloatArray]) -> FloatArray:
-        if responses is None:
-            return np.zeros(0)
-        orders = sorted({abs(load.order) for load in balances[0].system.turning})
-        crossings = _crossings(found.speeds[list(places)], values, tracks, orders, found.speeds)
-        try:
-            return responses.largest(responses_between(balances, found.speeds, crossings))
-        except np.linalg.LinAlgError:
-            raise AnalysisError("responses: there is none at an undamped resonance") from None
-
-    if responses is not None:
-        # what three equilibria miss of the printed responses is in all looks alike
-        own_values = answered([one.balance for one in looks], [one.centre for one in looks])
-        scale = np.divide(largest, own_values, out=np.ones(largest.size), where=own_values > 0.0)
-    both = band(look, np.concatenate([centre, largest]), held_open_of(model), numerics)
+    printed = np.concatenate(
+        [
+            [entry.speed for entry in critical],
+            [entry.damping_ratio for entry in critical],
+            np.zeros(0) if responses is None else responses.values,
+        ]
+    )
+    # what three equilibria miss of what is printed is in all looks alike
+    missed = more([one.balance for one in looks], centres)
+    scale = np.divide(printed, missed, out=np.ones(printed.size), where=missed > 0.0)
+    numerics = np.concatenate([*(one.numerics.reshape(-1) for one in looks), np.zeros(printed.size)])
+    centre = np.concatenate([*(one.reshape(-1) for one in centres), printed])
+    both = band(look, centre, held_open_of(model), numerics)
     at, first = [], 0
     for one in looks:
         size = one.chosen.size
@@ -144,73 +174,60 @@ def bands_over_speed(model: Model, found: Sweep, highest: float, responses: Resp
         for name in ("frequency", "damping_ratio")
     ]
     frequency, ratio = (_between(found.speeds, np.array(places), part) for part in parts)
-    return SpeedBands(places, tuple(at), tuple(tracks), frequency, ratio, both.of(slice(first, None)))
+    ends = first + np.arange(2 * len(critical)).reshape(2, -1)
+    own = both.of(ends), both.of(slice(first + ends.size, None))
+    return SpeedBands(places, tuple(at), tuple(tracks), frequency, ratio, *own)
 
 
-def _crossings(
+class _Course(NamedTuple):
+    """Course of the modes of a look over speed, shape (fine speeds, tracks): those of the sweep, changed by parts."""
+
+    speeds: FloatArray
+    swings: FloatArray
+    ratio: FloatArray
+
+    def crossings(self, order: float, track: int) -> list[tuple[float, float]]:
+        """Speeds at which a mode meets an order, and its damping ratios there."""
+        apart = self.swings[:, track] - order * self.speeds
+        found = []
+        for k in np.flatnonzero(apart[:-1] * apart[1:] <= 0.0).tolist():
+            part = apart[k] / (apart[k] - apart[k + 1]) if apart[k] != apart[k + 1] else 0.0
+            speed = float(self.speeds[k] + part * (self.speeds[k + 1] - self.speeds[k]))
+            found.append((speed, float(np.interp(speed, self.speeds, self.ratio[:, track]))))
+        return found
+
+
+def _course(
+    found: Sweep,
     known: FloatArray,
+    centres: Sequence[FloatArray],
     values: Sequence[FloatArray],
     tracks: Sequence[IntArray],
-    orders: Sequence[float],
-    speeds: FloatArray,
-) -> list[tuple[float, float, float]]:
-    """Orders, speeds and damping ratios at which modes of a look meet orders; modes are linear between its speeds."""
-    found = []
+) -> _Course:
+    """Course of modes whose frequencies and damping ratios (2, modes) at some speeds are changed from the centres."""
+    fine = np.linspace(found.speeds[0], found.speeds[-1], _FINE)
+    swings, ratios = np.full((2, _FINE, tracks[0].size), np.nan)
     for track in range(tracks[0].size):
-        own = [
-            value[:, places[track]] if places[track] >= 0 else (np.nan, np.nan)
-            for value, places in zip(values, tracks, strict=True)
-        ]
-        frequency, ratio = np.array(own).T
-        damped = 2.0 * math.pi * frequency * np.sqrt(np.maximum(1.0 - ratio**2, 0.0))
-        if not np.all(np.isfinite(damped)):
+        there = [k for k, places in enumerate(tracks) if places[track] >= 0]
+        pairs = [np.array([part[k][:, tracks[k][track]] for k in there]).reshape(-1, 2).T for part in (values, centres)]
+        (frequency, ratio), (own_frequency, own_ratio) = pairs
+        seen = np.isfinite(frequency)
+        if not seen.any():
             continue
-        fine = np.linspace(speeds[0], speeds[-1], _FINE)
-        swings = np.interp(fine, known, damped)
-        for order in orders:
-            apart = swings - order * fine
-            for k in np.flatnonzero(apart[:-1] * apart[1:] <= 0.0).tolist():
-                part = apart[k] / (apart[k] - apart[k + 1]) if apart[k] != apart[k + 1] else 0.0
-                speed = float(fine[k] + part * (fine[k + 1] - fine[k]))
-                found.append((order, speed, float(np.interp(speed, known, ratio))))
-    return found
+        undamped = np.sqrt(np.maximum(1.0 - ratio**2, 0.0) / np.maximum(1.0 - own_ratio**2, _LEAST))
+        stronger = np.divide(ratio, own_ratio, out=np.ones(ratio.size), where=own_ratio > 0.0)
+        at = known[there][seen]
+        grown, damped = (np.interp(fine, at, part[seen]) for part in (frequency / own_frequency * undamped, stronger))
+        swings[:, track] = grown * np.interp(fine, found.speeds, found.damped.eigenvalues.imag[:, track])
+        ratios[:, track] = damped * np.interp(fine, found.speeds, found.damped.damping_ratio[:, track])
+    return _Course(fine, swings, ratios)
 
 
-def critical_bounds(bands: SpeedBands, found: Sweep, critical: Sequence[CriticalSpeed]) -> FloatArray:
-    """Bounds of critical speeds and of damping ratios there, shape (critical, 4), NaN where they are not known.
-
-    Parameters
-    ----------
-    bands : SpeedBands
-        Bands of the modes of the sweep.
-    found : Sweep
-        The sweep.
-    critical : sequence of CriticalSpeed
-        Critical speeds of the machine.
-
-    Returns
-    -------
-    array
-        Low and high speed [rad/s], low and high damping ratio.
-    """
-    bounds = np.full((len(critical), 4), np.nan)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        slopes = np.gradient(found.damped.frequency, found.speeds, axis=0) * found.speeds[:, None]
-        slopes = slopes / found.damped.frequency
-    for row, entry in zip(bounds, critical, strict=True):
-        imaginary = [_at(found.speeds, values, entry.speed) for values in found.damped.eigenvalues.imag.T]
-        apart = np.abs(np.array(imaginary) - entry.eigenvalue.imag)
-        if not np.isfinite(apart).any():
-            continue
-        track = int(np.nanargmin(apart))
-        fall, rise = (_at(found.speeds, side[:, track], entry.speed) for side in bands.frequency)
-        weaker, stronger = (_at(found.speeds, side[:, track], entry.speed) for side in bands.damping_ratio)
-        own = 1.0 - _at(found.speeds, slopes[:, track], entry.speed)
-        if not own > 0.0:
-            continue  # the mode runs along with the order: no first order
-        row[:2] = entry.speed * max(1.0 - fall / own, 0.0), entry.speed * (1.0 + rise / own)
-        row[2:] = entry.damping_ratio * max(1.0 - weaker, 0.0), entry.damping_ratio * (1.0 + stronger)
-    return bounds
+def _track_of(found: Sweep, entry: CriticalSpeed) -> int:
+    """Mode of a sweep that a critical speed is of."""
+    imaginary = np.array([_at(found.speeds, values, entry.speed) for values in found.damped.eigenvalues.imag.T])
+    apart = np.abs(imaginary - entry.eigenvalue.imag)
+    return int(np.nanargmin(apart)) if np.isfinite(apart).any() else 0
 
 
 def _places(tracks: ComplexArray, modes_there: ComplexArray) -> IntArray:
