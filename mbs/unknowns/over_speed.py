@@ -175,8 +175,8 @@ def bands_over_speed(
     ]
     frequency, ratio = (_between(found.speeds, np.array(places), part) for part in parts)
     ends = first + np.arange(2 * len(critical)).reshape(2, -1)
-    own = both.of(ends), both.of(slice(first + ends.size, None))
-    return SpeedBands(places, tuple(at), tuple(tracks), frequency, ratio, *own)
+    met, largest = both.of(ends), both.of(slice(first + ends.size, None))
+    return SpeedBands(places, tuple(at), tuple(tracks), frequency, ratio, met, largest)
 
 
 class _Course(NamedTuple):
