@@ -122,7 +122,7 @@ def band_lines(job: Job, point: OperatingPoint | None = None) -> Iterator[str]:
     job : Job
         The job.
     point : OperatingPoint, optional
-        Where; the middle of the map if left out.
+        Operating point; the middle of the map if left out.
     """
     solver = solvers.of_map(job)
     if job.solver == "hertz" or solver.slow:

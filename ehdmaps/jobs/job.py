@@ -10,7 +10,6 @@ from typing import Any
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.solids import NO_SOLIDS, SolidsKeys
-from ehdmaps.jobs.tolerances import Tolerance
 from ehdmaps.maps.backbone_plan import STEPS, Steps
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry
@@ -19,6 +18,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.surface import Surface
+from ehdmaps.units import Tolerance
 
 MOST_POINTS = 2_000_000
 """Points of one map: a week of the default solver, and 300 MB. More is a slip in the job file."""

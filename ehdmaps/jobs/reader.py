@@ -18,7 +18,6 @@ from ehdmaps.jobs.problem import LOAD_AXIS, TEMPERATURE_AXIS, read_axis, read_co
 from ehdmaps.jobs.solids import NO_SOLIDS, check_solids, read_solids
 from ehdmaps.jobs.supply import read_supply, read_surface
 from ehdmaps.jobs.table import Table
-from ehdmaps.jobs.tolerances import OF_JOBS, read_tolerances
 from ehdmaps.maps.backbone_plan import STEP_LIMITS, STEPS, Steps
 from ehdmaps.netcdf_structure import DAMAGE, opened
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
@@ -27,7 +26,7 @@ from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.designations.families import words_for_lines
 from ehdmaps.physics.heat import ISOTHERMAL, heat_data
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.units import KELVIN, closest
+from ehdmaps.units import KELVIN, OF_JOBS, closest, read_tolerances
 
 LONGEST_FILE = 1_000_000
 """Bytes of a job file; axes of a hundred thousand values still fit."""

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from ehdmaps.errors import InputError, Problems
-from ehdmaps.jobs.tolerances import of_all
 from ehdmaps.physics.oil_supply import OilSupply
+from ehdmaps.units import of_all
 from mbs.model.drive import DrivenSpeed
 from mbs.model.profiles import Advanced, Constant, Course, SpeedProfile
 from mbs.scene.fields import HERTZ

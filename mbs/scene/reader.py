@@ -17,9 +17,8 @@ from ehdmaps.jobs import table
 from ehdmaps.jobs.problem import AxisRule, read_axis, read_lubricant
 from ehdmaps.jobs.supply import read_supply, read_surface
 from ehdmaps.jobs.table import Table
-from ehdmaps.jobs.tolerances import Tolerance, read_tolerances
 from ehdmaps.physics.contact import OIL_TEMPERATURES
-from ehdmaps.units import DAMPER, RPM, SPRING, TEMPERATURE, Display, closest, short
+from ehdmaps.units import DAMPER, RPM, SPRING, TEMPERATURE, Display, Tolerance, closest, read_tolerances, short
 from mbs.gears.pair import GearPair
 from mbs.model.body import FREEDOMS, Inertia
 from mbs.model.drive import Drive, DrivenSpeed, TorqueCurve

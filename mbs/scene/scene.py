@@ -31,7 +31,7 @@ from mbs.scene.turning import OrderLoad, Unbalance
 from mbs.settings import CampbellSettings, RunUp, SweepRange
 
 if TYPE_CHECKING:
-    from ehdmaps.jobs.tolerances import Tolerance
+    from ehdmaps.units import Tolerance
 
 _SEQUENCES = (
     "bodies",

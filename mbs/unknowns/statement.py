@@ -12,8 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ehdmaps.errors import InputError, closest, short
-from ehdmaps.jobs.tolerances import OF, TOLERATED, Tolerance, of_all, of_bearing, read_tolerance, split
-from ehdmaps.units import quantity
+from ehdmaps.units import OF, TOLERATED, Tolerance, of_all, of_bearing, quantity, read_tolerance, split
 
 if TYPE_CHECKING:
     from mbs.scene.scene import Scene

@@ -21,7 +21,7 @@ class Unknown:
     name : str
         What is not known, such as "clearance of drive".
     group : str
-        Key of [tolerances] that states it, see `ehdmaps.jobs.tolerances.TOLERATED`.
+        Key of [tolerances] that states it, see `ehdmaps.units.TOLERATED`.
     held : str
         How far it may be off, such as "5 to 50 um" or "+-5 K".
     why : str

@@ -11,7 +11,7 @@ import pytest
 import xarray as xr
 
 from ehdmaps.errors import AnalysisError, InputError
-from ehdmaps.jobs.tolerances import Tolerance
+from ehdmaps.units import Tolerance
 from mbs.analyses.modes import modes
 from mbs.analyses.sweep import SweepSettings, critical
 from mbs.cli import main
