@@ -5,17 +5,21 @@ does so in corners of the map: points are tried at both ends and in the middle o
 run has, and what one takes between them is read between them, linear in its place on the axes. Points without a
 solution are tried and counted like others: most take longest.
 
-The memory is that of all processes, each at its largest and counted whole, as the system tells it of those that tried.
+The memory is that of all processes, each at its largest and counted whole, as those had that tried.
 """
 
 from __future__ import annotations
 
+import contextlib
+import re
 import resource
 import sys
+import threading
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
@@ -40,6 +44,11 @@ FEW_POINTS, FEW_PLACES = 72, (2, 2, 1)
 BYTES_PER_POINT = 800
 SECONDS_PER_POINT = 1e-4
 """Results, dataset and the copy that is written; keeping and assembling: measured on a map of 200 000 points."""
+
+_LOOKED = 0.02
+"""How often the memory of programs is looked at [s]."""
+
+_PEAK = re.compile(r"^VmHWM:\s+(\d+) kB$", re.MULTILINE)
 
 _UNIT = 1024 if sys.platform != "darwin" else 1
 """Bytes of what the system counts memory in."""
@@ -173,16 +182,48 @@ def cost(tasks: Sequence[LineTask], points: int, processes: int) -> Cost:
 def _tried(task: LineTask) -> Trial:
     """Do a task, and tell what it took, without compiling."""
     began, watch = time.process_time(), stopwatch()
-    try:
-        arrays = task.run()
-    except SolverError as error:
-        arrays = task.failed(str(error))
+    with LargestProgram() as programs:
+        try:
+            arrays = task.run()
+        except SolverError as error:
+            arrays = task.failed(str(error))
     seconds = watch()
     usable = Status(int(arrays["status"][0])).usable
-    own, programs = (
-        resource.getrusage(who).ru_maxrss * _UNIT for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
-    )
-    return Trial(seconds, began, own, programs, usable, str(arrays["reason"][0]))
+    return Trial(seconds, began, _largest(resource.RUSAGE_SELF), programs.largest, usable, str(arrays["reason"][0]))
+
+
+class LargestProgram(threading.Thread):
+    """Looks at the programs that this process runs while it is open.
+
+    What the system tells of ended programs counts what the process was in which they began, which is this one.
+
+    Attributes
+    ----------
+    largest : int
+        Largest memory of one of them [bytes]; 0 on systems that do not tell it.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(daemon=True)
+        self.largest, self._over = 0, threading.Event()
+
+    def __enter__(self) -> LargestProgram:
+        self.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._over.set()
+        self.join()
+
+    def run(self) -> None:
+        """Look at them until it is closed."""
+        own = Path("/proc/self/task")
+        while not self._over.wait(_LOOKED):
+            with contextlib.suppress(OSError):  # it ended meanwhile, or a system without such files
+                children = " ".join((thread / "children").read_text() for thread in own.iterdir())
+                for child in children.split():
+                    found = _PEAK.search(Path(f"/proc/{child}/status").read_text())
+                    self.largest = max(self.largest, 1024 * int(found[1]) if found else 0)
 
 
 def _largest(who: int) -> int:

@@ -1,9 +1,12 @@
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
 from ehdmaps.errors import SolverError
 from ehdmaps.jobs import cost as costs
-from ehdmaps.jobs.cost import BYTES_PER_POINT, Cost, Trial, total
+from ehdmaps.jobs.cost import BYTES_PER_POINT, Cost, LargestProgram, Trial, total
 from ehdmaps.jobs.make.tasks import LineTask, line_tasks
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.physics.closed_form import FormulaSolver
@@ -78,6 +81,14 @@ def test_time_is_shared_and_the_dearest_point_is_waited_for():
     assert found([trial(3.0), trial(1.0)]).wall_seconds == 50.0 / 2 + 2.0
     assert found([trial(90.0), trial(1.0)]).wall_seconds == 90.0
     assert found([trial(90.0, began=0.0)], slow=False).wall_seconds == 25.0
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="programs are looked at in /proc")
+def test_memory_of_a_program_is_its_own_and_not_that_of_the_process_that_began_it():
+    # The bound above is what an empty Python takes; this process, full of libraries, takes far more.
+    with LargestProgram() as programs:
+        subprocess.run([sys.executable, "-S", "-c", "import time; x = bytes(50_000_000); time.sleep(0.2)"], check=True)
+    assert 50_000_000 <= programs.largest <= 80_000_000
 
 
 def test_memory_is_that_of_all_processes_and_their_programs():
