@@ -244,16 +244,19 @@ def quantity_lines(quantities: Sequence[Quantity]) -> list[str]:
     if not there:
         return []
     wide = max(len(one.of) for one in there)
-    lines = [f"  {'':{wide}s}  {'':20s} {'value':>9s}   {HEAD:26s}  numerics   {DECIDED}"]
+    stated = [bool(np.isfinite(one.band.numerics)) for one in there]
+    column = "numerics   " if any(stated) else ""
+    lines = [f"  {'':{wide}s}  {'':20s} {'value':>9s}   {HEAD:26s}  {column}{DECIDED}"]
     for last, one in zip([None, *there], there, strict=False):
         of = "" if last is not None and last.of == one.of else one.of
         band = one.band.of(None)
+        numerics = f"{deserved(size := float(band.numerics[0]), size):9s}  " if column else ""
         lines.append(
             f"  {of:{wide}s}  {f'{one.name}, {one.unit}':20s} {value_text(band, 0):>9s}   {bounds_text(band, 0):26s}  "
-            f"{deserved(size := float(band.numerics[0]), size):9s}  {exact_text(band, 0)}"
+            f"{numerics}{exact_text(band, 0)}"
         )
-    if any(not np.isfinite(one.band.numerics) for one in there):
-        lines.append("  numerics -: no errors of pressures, films and loads are stated, nor any by a law without a map")
+    if column and not all(stated):
+        lines.append("  numerics -: no errors of pressures, films and loads are stated, nor any by a law that has none")
     return lines
 
 
