@@ -87,7 +87,8 @@ def test_time_is_shared_and_the_dearest_point_is_waited_for():
 def test_memory_of_a_program_is_its_own_and_not_that_of_the_process_that_began_it():
     # The bound above is what an empty Python takes; this process, full of libraries, takes far more.
     with LargestProgram() as programs:
-        subprocess.run([sys.executable, "-S", "-c", "import time; x = b\"x\" * 50_000_000; time.sleep(0.2)"], check=True)
+        code = "import time; x = b'x' * 50_000_000; time.sleep(0.2)"
+        subprocess.run([sys.executable, "-S", "-c", code], check=True)
     assert 50_000_000 <= programs.largest <= 80_000_000
 
 
