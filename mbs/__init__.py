@@ -21,7 +21,7 @@ What is where, in the order of the data:
 scene file          `scene`: reader -> specs -> scene -> assembly; `kinds`: the machine elements; `choices`; `settings`
 the system          `model`: bodies, elements, what is prescribed; the system and its equilibrium
 what bodies are     `flexible` (beams, finite elements, reduction)
-what connects them  `bearings` (the bearing force), `gears`
+what connects them  `bearings` (the bearing force; `life`, `passes`, `electrics` of a bearing), `gears`
 linear              `linearised` (modes, responses, over speed); `modal` (identified from hammer hits)
 in time             `transient` (method, runs in C); `spectral` (levels over speed and order); `timedata` (files)
 analyses            `analyses`: statics, modes, lsa, sweep, runup, campbell, hammer; `planning`: what a scene requires;

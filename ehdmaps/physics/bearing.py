@@ -95,6 +95,11 @@ class BearingGeometry(Named):
         return self.roller_diameter / self.pitch_diameter
 
     @property
+    def lean(self) -> float:
+        """Cosine of the angle between the axes of rollers and bearing: 1."""
+        return 1.0
+
+    @property
     def inner_radius(self) -> float:
         """Reduced radius of the inner contact, (D/2)(1 - gamma) [m]."""
         return 0.5 * self.roller_diameter * (1.0 - self.gamma)

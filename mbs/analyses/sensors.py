@@ -144,14 +144,26 @@ def excited_orders(model: Model, turns: float) -> list[tuple[float, str]]:
     the run, are left out: the windows of all orders would have to be longer for them. Weight stands still, and has
     no order; how rollers pass under it is in theirs.
     """
-    given = [one for entry in model.system.elements if (one := entry.element.excitation) is not None]
-    highest_rank = max((entry.rank for entry in given), default=0)
-    # Rounded, for bearings that differ in the last bit only.
-    bases = {(round(entry.order, 9), entry.harmonics) for entry in given if entry.rank == highest_rank}
-    found = {round(k * base, 9) for base, count in bases for k in range(1, count + 1)}
+    given = [
+        (entry.element.name, one) for entry in model.system.elements if (one := entry.element.excitation) is not None
+    ]
+    highest_rank = max((one.rank for _, one in given), default=0)
+    found: dict[float, list[str]] = {}
+    for name, one in given:
+        for k in range(1, (one.harmonics if one.rank == highest_rank else 0) + 1):
+            # Rounded, for bearings that differ in the last bit only.
+            found.setdefault(round(k * round(one.order, 9), 9), []).append(name)
     least = max(_LEAST_ORDER, _LEAST_PERIODS / turns) if turns > 0.0 else math.inf
-    found |= {round(abs(load.order), 9) for load in model.system.turning if abs(load.order) >= least}
-    return [(order, f"{order:.4g}") for order in sorted(found)]
+    for load in model.system.turning:
+        if abs(load.order) >= least:
+            found.setdefault(round(abs(load.order), 9), [])
+    return [(order, _order_name(order, found[order])) for order in sorted(found)]
+
+
+def _order_name(order: float, elements: Sequence[str]) -> str:
+    """Order with what excites it: a gear mesh or bearing, the first of several."""
+    others = f" +{len(elements) - 1}" if elements[1:] else ""
+    return f"{order:.4g}" + (f" {elements[0]}{others}" if elements else "")
 
 
 def _turns(course: RunUp) -> float:

@@ -59,6 +59,9 @@ _LETTERS = 88
 _LEAST_HEIGHT, _LEAST_WIDTH = 0.05, 0.12
 """Between two names of orders, as parts of a diagram."""
 
+_SHORT = 6.0
+"""Letters of a name that this width holds."""
+
 _KILO = 2000.0
 """Highest frequency that is still shown in Hz."""
 
@@ -305,7 +308,10 @@ def order_lines(panel: Axes, result: RunUpSpectra, orders: Sequence[tuple[float,
         panel.plot(ends * RPM, ends * order * factor, color="w", lw=0.6, ls=_SPARSE)
         at = begin + _NAMED_AT * (stop - begin)
         place = ((at - begin) / (end - begin), at * order * factor / top)
-        if all(abs(place[1] - y) > _LEAST_HEIGHT or abs(place[0] - x) > _LEAST_WIDTH for x, y in named):
+        if all(
+            abs(place[1] - y) > _LEAST_HEIGHT or abs(place[0] - x) > _LEAST_WIDTH * max(1.0, len(name) / _SHORT)
+            for x, y in named
+        ):
             named.append(place)
             side = "bottom" if place[1] < 1.0 - _LEAST_HEIGHT else "top"
             text = panel.annotate(name, (at * RPM, at * order * factor), fontsize=6, color="w", ha="right", va=side)

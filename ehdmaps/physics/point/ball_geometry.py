@@ -131,6 +131,11 @@ class BallGeometry(Named):
         return self.ball_diameter * math.cos(self.contact_angle) / self.pitch_diameter
 
     @property
+    def lean(self) -> float:
+        """Cosine of the angle between the axes of a rolling ball and the bearing, by the nominal contact angle."""
+        return math.cos(self.contact_angle)
+
+    @property
     def groove_distance(self) -> float:
         """Distance A of the groove centres where both rings touch a ball without load [m]."""
         return (self.inner_conformity + self.outer_conformity - 1.0) * self.ball_diameter

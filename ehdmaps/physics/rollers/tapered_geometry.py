@@ -163,9 +163,14 @@ class TaperedGeometry(Named):
         return 0.5 * self.pitch_diameter / sine if sine > 0.0 else math.inf
 
     @property
+    def lean(self) -> float:
+        """Cosine of the angle between the axes of rollers and bearing."""
+        return math.cos(self.axis_angle)
+
+    @property
     def gamma(self) -> float:
         """Ratio D cos(theta)/d_m, by which rollers and cage turn."""
-        return self.roller_diameter * math.cos(self.axis_angle) / self.pitch_diameter
+        return self.roller_diameter * self.lean / self.pitch_diameter
 
     @property
     def raceway_diameters(self) -> tuple[float, float]:
@@ -238,7 +243,7 @@ class TaperedGeometry(Named):
         inner_speed, outer_speed : float
             Speeds of the rings [rad/s].
         """
-        return -0.5 * (inner_speed - outer_speed) * (1.0 / self.gamma - self.gamma) * math.cos(self.axis_angle)
+        return -0.5 * (inner_speed - outer_speed) * (1.0 / self.gamma - self.gamma) * self.lean
 
     def rib_speeds(
         self, inner_speed: float, outer_speed: float = 0.0, *, outer: bool = False, radius: float | None = None

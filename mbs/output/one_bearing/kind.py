@@ -20,6 +20,7 @@ from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, Display, written
 from mbs.bearings.thermal import BearingState
 from mbs.life import required_viscosity
 from mbs.output.state_text import HIGHEST_LOAD, LOADED
+from mbs.passes import passes_of
 
 if TYPE_CHECKING:
     from ehdmaps.electrics.dielectric import Dielectric
@@ -301,6 +302,17 @@ def numbers_of(own: Sequence[Number], *, axial: bool, speed: str = "") -> tuple[
         Number(f"tilt_{axis}", "rad", f"tilt of the inner ring about {axis}", _tilt(place))
         for place, axis in ((4, "y"), (5, "z"))
     ]
+    passing = [
+        Number(f"{name}_frequency", "Hz", words, _passes(place))
+        for place, (name, words) in enumerate(
+            (
+                ("cage", "turns of the cage (FTF)"),
+                ("outer_pass", "passes of a place of the outer raceway (BPFO)"),
+                ("inner_pass", "passes of a place of the inner raceway (BPFI)"),
+                ("element", "turns of a rolling element about its axis (BSF)"),
+            )
+        )
+    ]
     film = "Lambda, smallest film over the combined rms roughness"
     return (
         *matrices,
@@ -310,11 +322,22 @@ def numbers_of(own: Sequence[Number], *, axial: bool, speed: str = "") -> tuple[
         *own,
         Number("highest_raceway_load", "N", HIGHEST_LOAD, lambda p, _: np.max(first_row(p.elements.load))),
         Number("loaded_elements", "1", LOADED, lambda p, _: p.loaded),
+        *passing,
         Number("film_parameter", "1", film, lambda p, description: p.smallest_film / description.roughness),
         Number("equivalent_load", "N", "equivalent load P_ref of ISO/TS 16281", lambda p, _: p.reference.load),
         Number("reference_life", "1", "basic reference life L10r in millions of turns", lambda p, _: p.reference.life),
         Number("viscosity_ratio", "1", "viscosity ratio kappa of ISO 281", _viscosity_ratio),
     )
+
+
+def _passes(place: int) -> Callable[[Any, Description], float]:
+    """Reader of one of the frequencies of `Passes`."""
+
+    def read(point: Any, description: Description) -> float:
+        found = passes_of(point.geometry, point.elements.angle.size, point.inner_speed, point.outer_speed)
+        return found[place] / (2.0 * math.pi)
+
+    return read
 
 
 def _viscosity_ratio(point: Any, description: Description) -> float:

@@ -24,7 +24,7 @@ from mbs.output.one_bearing.kind import (
     row_of,
     shown,
 )
-from mbs.scene.fields import FORCE, MICROMETRE
+from mbs.scene.fields import FORCE, HERTZ, MICROMETRE
 
 if TYPE_CHECKING:
     from mbs.model.equilibrium import Equilibrium
@@ -120,8 +120,26 @@ def _page(kind: Kind, description: Description, point: Any) -> list[str]:
         + kind.beside_lambda(point, description),
         *(
             f"  {line}"
-            for line in (*kind.closing(point, row), *_electric(description, row), *_life(kind.element, point, row))
+            for line in (
+                *kind.closing(point, row),
+                *_passing(kind.element, row),
+                *_electric(description, row),
+                *_life(kind.element, point, row),
+            )
         ),
+    ]
+
+
+def _passing(element: str, row: Row) -> list[str]:
+    """A line on the frequencies at which the bearing repeats itself; none at rest."""
+    if row["element_frequency"] == 0.0:
+        return []
+    cage, outer, inner, turns = (
+        HERTZ.text(row[f"{name}_frequency"]) for name in ("cage", "outer_pass", "inner_pass", "element")
+    )
+    return [
+        f"passes of the outer raceway {outer} (BPFO), of the inner raceway {inner} (BPFI); turns of the cage {cage} "
+        f"(FTF), of a {element} {turns} (BSF), in pure rolling"
     ]
 
 
