@@ -169,7 +169,10 @@ def _alpha(scene: Scene, oil: Lubricant) -> Iterator[Unknown]:
         part, why = min(math.hypot(STATED_ALPHA, beside), ESTIMATED_ALPHA), "stated at another temperature"
     if not part:
         return
-    changed = oil.with_alpha(1.0 + part, temperature)
+    try:
+        changed = oil.with_alpha(1.0 + part, temperature)
+    except InputError:  # at the end of the oil's temperatures
+        changed = None
     if changed is None:
         yield Unknown("pressure-viscosity", "pressure_viscosity", "as measured, held", "by the numbers of its law")
         return

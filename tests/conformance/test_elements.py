@@ -202,6 +202,9 @@ def passes(kind):
     part, still = 0.3, np.zeros_like(at.rest)
     turned = at.operation._replace(angle=part * 2.0 * math.pi / at.element.excitation.order)
     expected = at.element.evaluate(at.rest, still, turned).force
+    if kind.name == "rollers as bodies":  # a mean over cage angles would make one of a loaded roller and a free one
+        assert at.element.passed(part) is at.element
+        return
     found = at.element.passed(part).evaluate(at.rest, still, at.operation).force
     # of balls and tapered rollers under preload the force hardly knows where they stand
     assert np.abs(found - expected).max() < 1e-3 * np.abs(found - at.force(at.rest)).max()

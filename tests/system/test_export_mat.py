@@ -161,7 +161,7 @@ def test_octave_reads_the_law(path, tmp_path, capsys):
 def test_octave_reads_the_law_of_a_line(tmp_path):
     """A bare contact at one speed and temperature, and dry contacts: axes of one value, and no damping."""
     for text, kind in ((LINE, "line"), (DRY, "series")):
-        path = made_map(tmp_path, text)
+        path = made_map(f"mat of {kind}", text)
         assert main(["export", path, "--to", "mat", "-o", str(tmp_path / "law.mat")]) == 0
         law = ehdmaps.open_map(path).law(kind)
         speed, temperature = law.speed_range[1], law.temperature_range[0]
@@ -184,7 +184,7 @@ def test_points_alone(path, tmp_path, capsys):
         (('["1 N/mm"]', '["1 m/s"]', '["40 degC"]'), "load"),
         (('["1 N/mm", "9 N/mm"]', '["0 m/s"]', '["40 degC"]'), "standstill"),
     ):
-        poor = made_map(tmp_path, map_job(*grid, solver="hertz"))
+        poor = made_map(f"mat without {why}", map_job(*grid, solver="hertz"))
         capsys.readouterr()
         assert main(["export", poor, "--to", "mat", "-o", str(tmp_path / "b.mat")]) == 0
         said = capsys.readouterr().out

@@ -19,7 +19,7 @@ from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import Surface
 from mbs import assemble, statics
-from mbs.cli import main
+from mbs.cli import main, parser
 from mbs.commands.cases import combinations, load_cases, read_compared, read_dry
 from mbs.output.model_text import heading
 from mbs.scene import choices
@@ -77,6 +77,9 @@ def weight(monkeypatch):
         for table, rows in more.items() if name.startswith("mbs.") else ():
             if getattr(module, table, None) is before[table]:
                 monkeypatch.setattr(module, table, rows)
+    parser.cache_clear()
+    yield
+    parser.cache_clear()
 
 
 class TestARowIsEnough:

@@ -144,7 +144,8 @@ class Options:
             Largest number of points.
         """
         first, last, count = given
-        low, high, before = read(first), read(last), len(self._problems)
+        before = len(self._problems)
+        low, high = read(first), read(last)
         if low >= high:
             self._problems.append(f"{option}: got {first:.40} to {last:.40}; allowed: TO above FROM")
         points = int(count) if count.isascii() and count.isdigit() and len(count) <= 9 else -1

@@ -95,7 +95,7 @@ def without_parts(words: str, known: Iterable[str]) -> str:
     Examples
     --------
     >>> from ehdmaps.physics.point.ball_catalogue import ball_estimate
-    >>> without_parts(ball_estimate("6208").estimated, ["balls", "inner_conformity", "ball_diameter"])[-70:]
+    >>> without_parts(ball_estimate("6208").estimated, ["balls", "inner_conformity", "ball_diameter"])[-72:]
     '(ISO 76): pitch diameter to 2 %, outer groove radius 0.515 to 0.53 of it'
     """
     known = set(known)

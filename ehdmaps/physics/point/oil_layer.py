@@ -82,7 +82,7 @@ def layered(ellipticity: float, ratio: FloatArray, part: FloatArray, line: Float
     --------
     >>> four = np.full(4, 5.0)
     >>> [round(float(x), 3) for x in layered(6.0, np.array([4.0, 2.0, 1.0, 0.6]), 0.8 + 0.0 * four, four).film]
-    [0.996, 0.987, 0.902, 0.598]
+    [0.996, 0.987, 0.9, 0.598]
     """
     corner = CORNER * ellipticity**BY_SHAPE
     far = corner * FAR * ellipticity**FAR_BY_SHAPE
