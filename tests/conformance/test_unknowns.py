@@ -141,7 +141,7 @@ def test_one_bearing(name, capsys, tmp_path, monkeypatch):
     assert "held open: temperature +-2 K" in out and "K along, N/um" in out
     ends = [solved(capsys, "bearing", "--temperature", end, ask=ask)[0] for end in ENDS]
     told = [each.removesuffix("_low") for each in found if each.endswith("_low")]
-    hold(found, ends, told)
+    hold(found, ends, told, {})
     assert {"stiffness_along", "damping_along", "minimum_film"} <= set(told)
 
 
