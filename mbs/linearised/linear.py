@@ -30,14 +30,11 @@ from ehdmaps.units import MOTIONS, Display
 from mbs.linearised.bands import film_share, law_bands
 from mbs.linearised.dynamic import dynamic_stiffness, system_film_states
 from mbs.linearised.modes import StateModes
-from mbs.model.elements import Input, MeshInput, Quantity, Sensor
+from mbs.model.elements import Input, MeshInput, Sensor
 from mbs.model.equilibrium import Equilibrium
 
 if TYPE_CHECKING:
     from mbs.gears.gear import GearMesh
-
-_ORDER: dict[Quantity, int] = {"displacement": 0, "velocity": 1, "acceleration": 2}
-"""How often a sensor differentiates."""
 
 _PER_TIME = ("", "/s", "/s2")
 
@@ -100,7 +97,7 @@ def response_unit(sensor: Sensor, entry: Input) -> str:
 
 def sensor_unit(sensor: Sensor) -> str:
     """Unit of a sensor, such as m/s2; rad for rotations."""
-    return f"{'rad' if np.any(sensor.direction[3:]) else 'm'}{_PER_TIME[_ORDER[sensor.quantity]]}"
+    return f"{'rad' if np.any(sensor.direction[3:]) else 'm'}{_PER_TIME[sensor.order]}"
 
 
 def response_display(sensor: Sensor, entry: Input) -> Display:
@@ -210,7 +207,7 @@ def state_space(balance: Equilibrium, inputs: Sequence[Input] = (), sensors: Seq
     rows = sensor_matrix(balance, sensors)
     C, D = np.zeros((len(sensors), 2 * n + q)), np.zeros((len(sensors), len(inputs)))
     for i, sensor in enumerate(sensors):
-        order = _ORDER[sensor.quantity]
+        order = sensor.order
         if order == 2:
             C[i], D[i] = rows[i] @ acceleration, rows[i] @ by_input
         else:
@@ -275,7 +272,7 @@ def sensed(
     """
     seen = sensor_matrix(balance, sensors) @ motion
     omega = 2.0 * np.pi * np.asarray(frequencies, dtype=np.float64)
-    orders = np.array([_ORDER[sensor.quantity] for sensor in sensors])
+    orders = np.array([sensor.order for sensor in sensors])
     result: ComplexArray = seen * ((1j * omega[:, None]) ** orders[None, :])[:, :, None]
     return result
 
@@ -316,7 +313,7 @@ def modal_response(
     resonance = 1.0 / (1j * omega[:, None] - states.eigenvalues)
     residues = (seen.T[:, :, None] * driven[:, None, :]).reshape(states.eigenvalues.size, -1)
     displacement = (resonance @ residues).reshape(omega.size, len(sensors), len(inputs))
-    orders = np.array([_ORDER[sensor.quantity] for sensor in sensors], dtype=np.int64)
+    orders = np.array([sensor.order for sensor in sensors], dtype=np.int64)
     result: ComplexArray = displacement * ((1j * omega[:, None]) ** orders)[:, :, None]
     if inputs:
         result *= _factors(balance, inputs, np.asarray(1j * omega, dtype=np.complex128))[:, None, :]
@@ -344,7 +341,7 @@ def seen_of_loads(
     by_load = np.linalg.solve(balance.system.mass.T, states.left[:, n : 2 * n].T).T @ ports.T
     rate = 2j * np.pi * np.asarray(frequencies, dtype=np.float64)
     resonance = 1.0 / (rate[:, None] - states.eigenvalues)
-    orders = np.array([_ORDER[sensor.quantity] for sensor in sensors], dtype=np.int64)
+    orders = np.array([sensor.order for sensor in sensors], dtype=np.int64)
     displacement = np.stack([(resonance * row) @ by_load for row in seen], axis=1)
     return np.asarray(displacement * (rate[:, None] ** orders)[:, :, None])
 
@@ -397,7 +394,7 @@ def _checked(
     at = frequencies[checked]
     direct = frequency_response(balance, inputs, sensors, at)
     omega = 2.0 * np.pi * at[:, None, None]
-    orders = np.array([_ORDER[sensor.quantity] for sensor in sensors])[None, :, None]
+    orders = np.array([sensor.order for sensor in sensors])[None, :, None]
     whole = np.linalg.norm(responses(balance, inputs, at), axis=1)[:, None, :]
     rows = np.linalg.norm(sensor_matrix(balance, sensors), axis=1)[None, :, None]
     size = np.abs(direct) + 1e-6 * rows * whole * omega**orders

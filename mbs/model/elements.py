@@ -531,6 +531,11 @@ class Sensor:
     quantity: Quantity = "displacement"
     against: str = GROUND
 
+    @property
+    def order(self) -> int:
+        """Order of the derivative of the displacement that it senses: 0, 1 or 2."""
+        return ("displacement", "velocity", "acceleration").index(self.quantity)
+
 
 @dataclass(frozen=True, eq=False)
 class Input:

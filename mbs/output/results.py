@@ -275,6 +275,10 @@ def of_laws(labels: Sequence[str], parts: Sequence[xr.Dataset], shared: Sequence
     return joined.assign({name: parts[0][name] for name in shared if name in parts[0]})
 
 
+MOTION_UNITS = "m, m/s or m/s2 by the sensor's quantity (rad for rotations)"
+RESPONSE_UNITS = f"{MOTION_UNITS}, per N, N m or m"
+"""Units of sensors, and of responses to a load or to a transmission error."""
+
 BAND = "band, either way, by errors of known size, of"
 """How datasets call the bands; they are NaN where none is stated."""
 
@@ -450,10 +454,9 @@ def linear_dataset(
     states = [*names, *(f"{name}.rate" for name in names), *(f"film_{index + 1}" for index in range(films))]
     dims = ("frequency", "sensor", "input")
     quantities = [sensor.quantity for sensor in sensors]
-    units = "m, m/s or m/s2 by the sensor's quantity (rad for rotations), per N, N m or m"
     variables = {
-        "response_real": variable(dims, responses.real, units, "real part of the response"),
-        "response_imaginary": variable(dims, responses.imag, units, "imaginary part of the response"),
+        "response_real": variable(dims, responses.real, RESPONSE_UNITS, "real part of the response"),
+        "response_imaginary": variable(dims, responses.imag, RESPONSE_UNITS, "imaginary part of the response"),
         "response_level_error": variable(
             dims,
             np.full(responses.shape, np.nan) if level_error is None else level_error,

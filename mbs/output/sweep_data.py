@@ -16,7 +16,7 @@ from mbs.linearised.critical import CriticalSpeed, OrderResponse, orbit, turning
 from mbs.linearised.sweep_result import Sweep
 from mbs.model.elements import Sensor
 from mbs.model.system import System
-from mbs.output.results import BAND, REDUCED
+from mbs.output.results import BAND, MOTION_UNITS, REDUCED, RESPONSE_UNITS
 
 _Entry = tuple[tuple[str, ...], Any, dict[str, str]]
 """A variable as xarray takes it."""
@@ -27,8 +27,6 @@ BEARING = ("case", "speed", "bearing")
 RESPONSE = ("case", "speed", "response_frequency", "sensor", "input")
 _PART_OF_MODE, _PART_OF_DAMPED = ("case", "part", "speed", "mode"), ("case", "part", "speed", "complex_mode")
 PEAK = ("case", "speed", "response_peak", "sensor", "input")
-
-RESPONSE_UNITS = "m, m/s or m/s2 by the sensor's quantity (rad for rotations), per N, N m or m"
 
 
 @dataclass(frozen=True)
@@ -205,10 +203,6 @@ def _said(units: str, words: str) -> dict[str, str]:
     return {"units": units, "long_name": words}
 
 
-_DIFFERENTIATED = {"displacement": 0, "velocity": 1, "acceleration": 2}
-_RESPONSE_UNITS = "m, m/s or m/s2 by the sensor's quantity (rad for rotations)"
-
-
 def sensed(system: System, sensors: Sequence[Sensor], speeds: FloatArray, response: OrderResponse) -> ComplexArray:
     """Amplitudes of all sensors, shape (speeds, sensors): the signal is Re[amplitude exp(i order angle)].
 
@@ -226,7 +220,7 @@ def sensed(system: System, sensors: Sequence[Sensor], speeds: FloatArray, respon
     amplitudes = np.zeros((speeds.size, len(sensors)), dtype=np.complex128)
     for index, sensor in enumerate(sensors):
         row = sensor.direction @ system.relative(sensor.on, sensor.against)
-        rate = (1j * response.order * speeds) ** _DIFFERENTIATED[sensor.quantity]
+        rate = (1j * response.order * speeds) ** sensor.order
         amplitudes[:, index] = rate * (response.motion @ row)
     return amplitudes
 
@@ -255,7 +249,7 @@ LARGEST = {
     "orbit_largest": (("order", "place"), {"units": "m", "long_name": "largest semi-axis of the orbit over speed"}),
     "response_largest": (
         ("order", "sensor"),
-        {"units": _RESPONSE_UNITS, "long_name": "largest amplitude of the sensor over speed"},
+        {"units": MOTION_UNITS, "long_name": "largest amplitude of the sensor over speed"},
     ),
     "element_force_largest": (
         ("order", "element"),
@@ -351,7 +345,7 @@ def critical_dataset(
         dims = ("order", "speed", "sensor")
         for name, part in (("real", amplitudes.real), ("imaginary", amplitudes.imag)):
             words = f"{name} part of the amplitude: the signal is Re[amplitude exp(i order angle)]"
-            variables[f"response_{name}"] = variable(dims, part, _RESPONSE_UNITS, words)
+            variables[f"response_{name}"] = variable(dims, part, MOTION_UNITS, words)
         ellipses = [orbits(system, entry) for entry in responses]
         coordinates["place"] = list(ellipses[0][0])
         axes = np.array([part for _, part in ellipses])

@@ -50,8 +50,6 @@ MOST_RECORDED = 200_000_000
 SYMMETRIC = 1e-12
 """What the stiffness of bodies and springs may lack of symmetry, as a part of its largest number."""
 
-_ORDERS = {"displacement": 0, "velocity": 1, "acceleration": 2}
-
 
 @dataclass(frozen=True, eq=False)
 class States:
@@ -320,7 +318,7 @@ class _Plan:
         ports = np.concatenate([np.zeros((0, system.size)), *(entry.transform for entry in system.elements)])
         seen = [sensor.direction @ system.relative(sensor.on, sensor.against) for sensor in sensors]
         rows = np.concatenate([np.zeros((0, system.size)), *(row[None, :] for row in seen), ports])
-        orders = [*(_ORDERS[sensor.quantity] for sensor in sensors), *([0] * ports.shape[0])]
+        orders = [*(sensor.order for sensor in sensors), *([0] * ports.shape[0])]
         samples = math.ceil(duration / settings.sample - 1e-9)
         stride = settings.steps_per_sample if options.every_step else 1
         width = rows.shape[0] * stride + ports.shape[0] + (3 * system.size if options.states else 0)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from mbs.output.sweep_data import RESPONSE_UNITS
+from mbs.output.results import RESPONSE_UNITS
 from tests.cases.commands import check_units, run
 from tests.conformance.machines import KINDS, MACHINES, MIXED, Machine
 

@@ -57,7 +57,11 @@ def test_one_bearing(name, capsys, tmp_path, monkeypatch):
         copy = data[old.format(element)]
         assert np.array_equal(copy, data[new])
         assert copy.attrs["comment"].startswith(f"copy of {new}: the next release has no ")
-    for words in (f"{element}s carry more than 1 %", "damping, low-frequency limit", "Lambda", "assumed: "):
+    # a turn of the inner ring passes each element once; the cage carries all of them past a place of the outer one
+    cage, outer, inner = (float(data[f"{at}_frequency"][0, 0]) for at in ("cage", "outer_pass", "inner_pass"))
+    assert outer + inner == pytest.approx(25.0 * data.sizes[element], rel=1e-12)
+    assert outer == pytest.approx(cage * data.sizes[element], rel=1e-12) and 0.35 < cage / 25.0 < 0.5
+    for words in ("(BPFO)", f"{element}s carry more than 1 %", "damping, low-frequency limit", "Lambda", "assumed: "):
         assert words in page
     status, _, err = run(capsys, "bearing", *ask, "--bands", "numerics", "-o", "a.toml")  # for ROSS, whose x is y here
     assert status == 0, err
