@@ -86,7 +86,11 @@ def missing_words(scene: Scene, unknowns: Sequence[Unknown]) -> str:
     """
     held = [one.name for one in unknowns if not one.looks]
     beside = [one.name for one in unknowns if one.beside]
-    held += [f"oil supply ({', '.join(beside)})"] if beside else []
+    groups = {one.group for one in unknowns}
+    if beside:
+        held.append(f"oil supply ({', '.join(beside)})")
+    elif groups & {"temperature", "pressure_viscosity"} and "oil_layer" not in groups:
+        held.append("oil supply")  # films that nobody looked at on other supplies
     return f"not in it: {', '.join([NOT_IN_IT, *([BALL_CAGE] if scene.has_points else []), *held])}"
 
 
