@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import faulthandler
+import gc
 import json
 import os
 import re
@@ -212,6 +213,8 @@ def _work(reader: Reader, seed: int, begin: int, end: int, sink: int) -> NoRetur
     status = 1
     try:
         faulthandler.disable()
+        # Garbage of the parent stays: what this process gave back would hide as much growth.
+        gc.freeze()
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
         # What a library prints about a broken file is no finding, and no use to anybody.
         nowhere = os.open(os.devnull, os.O_WRONLY)
