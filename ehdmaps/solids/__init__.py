@@ -14,9 +14,6 @@ Roller and rings in the plane, and their structural law `fe`:
 
 A roller of finite length:
 
-`three_d`              pressures over width and length, from half spaces and free ends
+`finite_line`          how bodies of finite depth with free ends yield beside a force
 `slices`               what slices of a roller know of their neighbours, as a matrix
-`three_d_bricks`       bricks of roller and raceway: mesh, stiffness, how far their surface yields
-`three_d_reference`    the contact by finite elements, also by CalculiX, and its shipped results
-`three_d_compare`      pressures over the length beside the finite elements
 """

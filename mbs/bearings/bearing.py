@@ -169,8 +169,8 @@ class Bearing:
         thick.
         """
         # scipy is loaded for those who want it only: scenes are read without
+        from ehdmaps.solids.finite_line import FiniteLine
         from ehdmaps.solids.slices import slice_coupling
-        from ehdmaps.solids.three_d import FiniteLine
 
         geometry = self.geometry
         diameter = geometry.roller_diameter

@@ -264,12 +264,6 @@ def test_every_command_of_ehdmaps(words, folder, monkeypatch):
     run(main, words)
 
 
-def test_the_length_of_a_roller_needs_finite_elements_that_are_not_shipped(folder, monkeypatch, capsys):
-    monkeypatch.chdir(folder)
-    assert main(["length", "--bearing", "NJ2207"]) == 2
-    assert "got 'NJ2207'; allowed: N1014, NU308; for others run `ehdmaps length JOB --solve" in capsys.readouterr().err
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("words", ["statics|scene.toml|--law|table", "plan|scene.toml|-o|plan.toml"])
 def test_scenes_have_designations(words, folder, monkeypatch):

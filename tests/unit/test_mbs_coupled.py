@@ -13,7 +13,7 @@ import mbs
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.solids.slices import coupled_loads, without_ends
+from ehdmaps.solids.slices import without_ends
 from mbs import cli
 from mbs.bearings import laws
 from mbs.bearings.bearing import MOST_COUPLED, Bearing
@@ -24,6 +24,7 @@ from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import parse_scene
+from tests.finite_length.slice_loads import coupled_loads
 
 SCENE = Path(mbs.__file__).parent / "systems" / "nu308_rigid.toml"
 

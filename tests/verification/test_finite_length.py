@@ -14,18 +14,12 @@ from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.hertz import half_width, max_pressure
 from ehdmaps.physics.solids import STEEL, reduced_modulus
 from ehdmaps.physics.surface import iso_profile
-from ehdmaps.solids.slices import (
-    balanced_loads,
-    coupled_loads,
-    plane_depth,
-    plane_law,
-    slice_coupling,
-    without_ends,
-)
-from ehdmaps.solids.three_d import FiniteLine, depth_term, layer_response, love, solve_length
-from ehdmaps.solids.three_d_bricks import CORNERS, brick_stiffness
-from ehdmaps.solids.three_d_compare import compare_lengths, mesh_change
-from ehdmaps.solids.three_d_reference import (
+from ehdmaps.solids.finite_line import FiniteLine, depth_term, layer_response
+from ehdmaps.solids.slices import plane_depth, slice_coupling, without_ends
+from tests.cases.programs import needed
+from tests.finite_length.bricks import CORNERS, brick_stiffness
+from tests.finite_length.compare import compare_lengths, mesh_change
+from tests.finite_length.reference import (
     LengthReference,
     MeshedContact,
     load_by_calculix,
@@ -33,7 +27,8 @@ from ehdmaps.solids.three_d_reference import (
     save_reference,
     shipped_reference,
 )
-from tests.cases.programs import needed
+from tests.finite_length.slice_loads import balanced_loads, coupled_loads, plane_law
+from tests.finite_length.solution import love, solve_length
 
 NU308 = BearingGeometry.named("NU308")
 LINE = FiniteLine(NU308.inner_radius, NU308.roller_length, 7e-3, 14e-3)

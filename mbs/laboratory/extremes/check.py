@@ -201,7 +201,7 @@ def searched(
     Parameters
     ----------
     arguments : argparse.Namespace
-        Arguments of a command: only, output and json.
+        Arguments of a command: output, json, and only where the command has several parts.
     parts : mapping of str to callable
         What makes the checks of each part, in their order.
     head : str
@@ -219,9 +219,10 @@ def searched(
     InputError
         If there is no such part, or the file cannot be written.
     """
-    only, output = arguments.only, arguments.output
+    only: str | None = getattr(arguments, "only", None)
+    output = arguments.output
     problems = Problems(output_problems([Output("-o", output, CHECKS)], read))
-    if only not in (None, *parts):
+    if only is not None and only not in parts:
         problems.append(f"--only: got {only!r:.60}{closest(only, tuple(parts))}; allowed: {', '.join(parts)}")
     problems.check()
     checks = [check for name, make in parts.items() if only in (None, name) for check in make()]

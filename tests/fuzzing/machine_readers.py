@@ -13,12 +13,12 @@ from ehdmaps.arrays import FloatArray
 from mbs.flexible.carry_out import carry_out
 from mbs.flexible.reduced_body import ReducedBody
 from mbs.flexible.reduced_file import read_reduced, write_reduced
-from mbs.laboratory.extremes.fuzzing import Reader, as_written
 from mbs.modal.records import Channel, Hits, Responses
 from mbs.modal.uff import Measurement, read_uff, write_uff
 from mbs.scene.assembly import assemble
 from mbs.scene.flexible import read_body_file
 from mbs.scene.reader import read_scene
+from tests.fuzzing.search import Reader, as_written
 
 _SCENES = ("nu308_rigid", "n1014_rigid")
 """Shipped scenes without files of their own."""

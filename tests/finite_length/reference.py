@@ -25,15 +25,15 @@ from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.solids import STEEL, Material, reduced_modulus
 from ehdmaps.physics.surface import iso_profile
 from ehdmaps.solids.calculix import run_deck
-from ehdmaps.solids.three_d import touching
-from ehdmaps.solids.three_d_bricks import Block, QuarterModel, quarter_meshes, surface_compliance
+from tests.finite_length.bricks import Block, QuarterModel, quarter_meshes, surface_compliance
+from tests.finite_length.solution import touching
 
 _LONGEST_FILE = 20_000_000
 
 FORMAT = 1
 """Of the files."""
 
-FOLDER = Path(__file__).parent / "length_data"
+FOLDER = Path(__file__).parent / "data"
 """Folder of the shipped files."""
 
 LEVELS = (2.0, 1.4, 1.0)
@@ -277,7 +277,7 @@ def shipped_reference(bearing: str) -> LengthReference:
     if bearing not in names:
         raise InputError(
             f"reference over the length: got {bearing!r:.60}; allowed: {', '.join(names)}; for others run "
-            "`ehdmaps length JOB --solve FILE.json`"
+            "`python -m tests.finite_length --solve`"
         )
     return read_reference(FOLDER / f"{bearing}.json")
 
@@ -295,7 +295,7 @@ def read_reference(path: str | Path) -> LengthReference:
     InputError
         If it is no such file.
     """
-    text = read_text(path, _LONGEST_FILE, "a file made by `ehdmaps length JOB --solve FILE.json`")
+    text = read_text(path, _LONGEST_FILE, "a file made by `python -m tests.finite_length --solve`")
     try:
         content = json.loads(text)
         if content["format"] != FORMAT:
@@ -310,8 +310,8 @@ def read_reference(path: str | Path) -> LengthReference:
         )
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(
-            f"{path}: is no file of contacts over the length ({error!r:.80}); allowed: one made by `ehdmaps length JOB "
-            "--solve FILE.json`"
+            f"{path}: is no file of contacts over the length ({error!r:.80}); allowed: one made by "
+            "`python -m tests.finite_length --solve`"
         ) from None
 
 

@@ -29,7 +29,7 @@ import numpy as np
 
 from ehdmaps.errors import EhdmapsError
 from mbs.laboratory.extremes.check import Check, Verdict, checked
-from mbs.laboratory.extremes.damage import Damaged, damage
+from tests.fuzzing.damage import Damaged, damage
 
 MOST_SECONDS = 10.0
 """Processor time that a small file may take; most take some milliseconds."""
@@ -38,7 +38,7 @@ MOST_WAIT = 120.0
 """Wall time after which a case counts as one that never ends, though it takes no processor time."""
 
 MOST_MEMORY = 400e6
-"""Memory that a file may take [bytes]; the damaged ones are small, see `mbs.laboratory.extremes.damage.LARGEST`."""
+"""Memory that a file may take [bytes]; the damaged ones are small, see `tests.fuzzing.damage.LARGEST`."""
 
 _ADDRESSES = 2e9
 """Address space that a child may add [bytes]: what asks for more is told, instead of filling the machine."""

@@ -11,9 +11,11 @@ import numpy as np
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.hertz import LINE_LIMIT
-from ehdmaps.solids.slices import balanced_loads, plane_law, slice_coupling
-from ehdmaps.solids.three_d import FiniteLine, LengthSolution, solve_length
-from ehdmaps.solids.three_d_reference import LengthCase, LengthReference, profile_depths
+from ehdmaps.solids.finite_line import FiniteLine
+from ehdmaps.solids.slices import slice_coupling
+from tests.finite_length.reference import LengthCase, LengthReference, profile_depths
+from tests.finite_length.slice_loads import balanced_loads, plane_law
+from tests.finite_length.solution import LengthSolution, solve_length
 
 CELLS = (12, 80)
 """Cells of the solution over half the width and along the roller."""

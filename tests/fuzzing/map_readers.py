@@ -24,7 +24,7 @@ from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.outputs import MARK
 from ehdmaps.physics.closed_form import FormulaSolver
-from mbs.laboratory.extremes.fuzzing import Reader, as_written
+from tests.fuzzing.search import Reader, as_written
 
 _JOBS = ("nu308", "nu308_openfoam")
 """Shipped jobs that are damaged, beside `_BARE`."""
