@@ -38,6 +38,8 @@ class BearingGeometry(Named):
     clearance_range : ClearanceRange or None
         What the clearance may be by the designation; no part of what makes bearings equal, nor of records. None where
         it is stated.
+    spelled : str or None
+        What each part of the designation means; no part of what makes bearings equal, nor of records.
 
     Raises
     ------
@@ -62,6 +64,7 @@ class BearingGeometry(Named):
     label: str | None = field(default=None, compare=False)
     estimated: str | None = None
     clearance_range: ClearanceRange | None = field(default=None, compare=False)
+    spelled: str | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         problems = _problems(self)

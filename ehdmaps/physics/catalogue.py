@@ -133,7 +133,8 @@ def designated(designation: str) -> BearingGeometry:
     (True, 'clearance not stated: C3 of ISO 5753-1, less a fit: 55 um, the middle of 30 to 80 um')
     """
     known = BEARINGS.get(plain_name(designation, ROLLERS))
-    return estimate(designation) if known is None else known.delivered(_delivered(designation))
+    bearing = estimate(designation) if known is None else known.delivered(_delivered(designation))
+    return bearing.typed(designation)
 
 
 def _delivered(designation: str) -> ClearanceRange | None:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.outputs import Output, output_problems, write_figure
 from ehdmaps.physics.designations.families import not_served
+from ehdmaps.physics.designations.reader import BALLS, TAPERED, read_designation
 from mbs.commands.common import with_bands
 from mbs.commands.one_bearing.bands import point_lines
 from mbs.commands.one_bearing.family import Family, Request
@@ -22,10 +23,7 @@ if TYPE_CHECKING:
     from mbs.unknowns.looks import Band
 
 _BALLS = re.compile(r"\s*[67]\d{3}(?!\d)")
-"""Beginning of the designation of a ball bearing."""
-
-_TAPERED = re.compile(r"\s*(?:HR ?)?3[0-3][0-9][ -]?\d\d(?!\d)", re.IGNORECASE)
-"""Beginning of the designation of a tapered roller bearing."""
+"""Beginning of what may be meant as the designation of a ball bearing."""
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -133,13 +131,15 @@ def family_of(name: str, axial: str | None) -> Family:
 
             return BALL_BEARINGS
     if not by_keys:
-        if _BALLS.match(name):
+        found = read_designation(name)
+        kind = "" if found is None else found.kind
+        if kind in BALLS or (not kind and _BALLS.match(name)):
             from mbs.commands.one_bearing.balls import BALL_BEARINGS
 
             return BALL_BEARINGS
         if words := not_served(name):
             raise InputError(f"BEARING: {words}")
-        if _TAPERED.match(name):
+        if kind == TAPERED:
             from mbs.commands.one_bearing.ribs import TAPERED_BEARINGS
 
             return TAPERED_BEARINGS

@@ -126,13 +126,13 @@ def assumed_words(scene: Scene) -> str:
 
 
 def _estimated(model: Model) -> list[str]:
-    """A line for each kind of bearing whose inner geometry is an estimate, and for each estimated gear mesh."""
+    """A line for each kind of bearing with suffixes, or with an estimated inner geometry, and for estimated gears."""
     kinds: dict[tuple[str, str], list[str]] = {}
-    entries = [(entry.geometry.name, entry.geometry.estimated, entry.name) for entry in model.scene.bearings]
-    entries += [(entry.geometry.name, entry.geometry.estimated, entry.name) for entry in model.scene.located]
-    for name, estimated, bearing in entries:
-        if estimated:
-            kinds.setdefault((name, estimated), []).append(bearing)
+    for entry in (*model.scene.bearings, *model.scene.located):
+        spelled = entry.geometry.spelled or ""
+        for words in (spelled if "; " in spelled else "", entry.geometry.estimated):
+            if words:
+                kinds.setdefault((entry.geometry.name, words), []).append(entry.name)
     lines = [f"  {name} ({', '.join(bearings)}): {words}" for (name, words), bearings in kinds.items()]
     return lines + [f"  {pair.estimate}" for pair in model.scene.gears if pair.estimate]
 

@@ -20,7 +20,11 @@ from ehdmaps.physics.catalogue import _RATINGS, designated, estimate
 from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.designations.estimates import estimated_parts
 from ehdmaps.physics.designations.oil_class import _LIMITS, _QUADRATICS, CLASSES, viscosity_100, viscosity_index
+from ehdmaps.physics.designations.reader import read_designation
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
+from ehdmaps.physics.point.ball_catalogue import ball_estimate, ball_static_rating
+from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
+from ehdmaps.physics.solids import STEEL
 from mbs.cli import main as mbs_main
 
 SMALL = """
@@ -52,7 +56,6 @@ def test_one_row_serves_four_types():
     ("text", "words"),
     [
         ("NU210M", "got"),
-        ("NU 210 W", "got"),
         ("NN3010", "got 'NN3010', double row cylindrical roller bearing: not yet"),
         ("6210", "6210 is a ball bearing: its contacts are points"),
     ],
@@ -77,6 +80,57 @@ def _width(key):
     from ehdmaps.physics.catalogue import boundary
 
     return boundary(f"NU{key}").width
+
+
+@pytest.mark.parametrize(
+    ("typed", "name", "told"),
+    [
+        ("B7005-C-T-P4S", "7005C", "B: spindle bearing (Schaeffler); T: cage; P4S: class of accuracy"),
+        ("7014 CD/P4A", "7014C", "D: design of the maker; P4A: class of accuracy"),
+        ("7014 CD/HCP4A", "7014C HC", "D: design of the maker; HC: rolling elements of silicon nitride; P4A: class of"),
+        ("HCB7014-E-T-P4S", "7014AC HC", "HCB: balls of silicon nitride (Schaeffler); T: cage; P4S"),
+        ("NU 308 ECP", "NU308", "ECP: reinforced, as tables here have it, and its cage"),
+        ("6205-2RSH/C3", "6205 C3", "2RSH: seals or shields; C3: class of radial clearance"),
+        ("HR30205J", "30205", "HR: high capacity (NSK); J: design"),
+        ("NU 210 GE9", "NU210", "GE9: not understood, and left out"),
+    ],
+)
+def test_each_part_of_a_designation_is_told(typed, name, told):
+    found = read_designation(typed)
+    assert (found.text, found.words.partition("; ")[2][: len(told)]) == (name, told)
+    assert read_designation(found.text).text == name  # the name is a designation
+
+
+@pytest.mark.parametrize(
+    ("typed", "why"),
+    [
+        ("32206 B", "B: steeper angle"),
+        ("HCS7014-C-T-P4S", "HCS: smaller balls for high speed"),
+        ("HCNU210", "rollers of silicon nitride: not yet"),
+        ("7208 B DB", "DB: set of bearings"),
+        ("NJ2310 ECM/V", "V: full complement"),
+    ],
+)
+def test_what_changes_forces_and_is_not_served_is_refused(typed, why):
+    read = {"7": ball_estimate, "H": designated, "N": designated, "3": tapered_estimate}[typed.removeprefix("HCS")[0]]
+    with pytest.raises(InputError, match=f"bearing designation: got '{typed}', {why}"):
+        read(typed)
+
+
+def test_hybrid_balls_are_stiffer_by_their_modulus(capsys):
+    """At equal load Hertz has K ~ E'^(2/3), 1.181 to that power; balls without clearance keep their angle of zero."""
+    found = []
+    for name in ("6205", "6205-2RSLTN9/HC5"):
+        asked = ["bearing", name, "--load", "500 N", "--clearance", "0 um", "--speed", "0 rpm", "--law", "hertz"]
+        assert mbs_main(asked) == 0
+        said = capsys.readouterr().out
+        found.append(float(next(line for line in said.splitlines() if line.startswith("  stiffness")).split()[2]))
+    assert "2RSL: seals or shields; TN9: cage; HC5: rolling elements of silicon nitride" in said
+    assert found[1] / found[0] == pytest.approx(1.117, abs=1e-3)  # its last digit, and five printed ones
+    steel, hybrid = ball_estimate("6205"), ball_estimate("6205 HC")
+    assert (hybrid.ball_diameter, hybrid.estimated) == (steel.ball_diameter, steel.estimated)
+    assert ball_static_rating(hybrid) == pytest.approx(0.7 * ball_static_rating(steel))
+    assert hybrid.ball_mass(STEEL) / steel.ball_mass(STEEL) == pytest.approx(0.41, abs=0.003)
 
 
 def test_errors_are_stated_by_estimates_alone():

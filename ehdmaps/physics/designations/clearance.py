@@ -21,8 +21,10 @@ from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from ehdmaps.errors import InputError, short
+from ehdmaps.physics.designations.affixes import REFUSED
 from ehdmaps.physics.designations.reader import (
     ANGULAR,
+    BALLS,
     CYLINDRICAL,
     DEEP_GROOVE,
     NEEDLE,
@@ -56,6 +58,9 @@ _MOUNTED = {
     TAPERED: "the play of tapered bearings is set when they are mounted",
 }
 _NO_RING = "without an inner ring, shaft and needles make the clearance"
+
+_TOLD = ("clearance_range", "spelled")
+"""Fields of a geometry that are no part of records: what is told of it."""
 
 MOUNTED, DELIVERED, STATED = "mounted", "delivered", "stated"
 """What a bearing has of a range: what a fit that is not known leaves of it; all of it, before it is mounted; neither,
@@ -138,6 +143,7 @@ class Named:
         name: str
         label: str | None
         rollers: int
+        spelled: str | None
 
     @property
     def rolling_elements(self) -> int:
@@ -157,8 +163,21 @@ class Named:
     def record(self) -> dict[str, float | str]:
         """Everything that defines the bearing, for provenance; SI units; what is not given is left out."""
         own: Any = self
-        values = {entry.name: getattr(self, entry.name) for entry in fields(own) if entry.name != "clearance_range"}
+        values = {entry.name: getattr(self, entry.name) for entry in fields(own) if entry.name not in _TOLD}
         return {name: value for name, value in values.items() if value is not None}
+
+    def typed(self, designation: str) -> Self:
+        """The same bearing with what each part of its designation means.
+
+        Parameters
+        ----------
+        designation : str
+            Designation as it was typed.
+        """
+        own: Any = self
+        found = read_designation(designation)
+        changed: Self = replace(own, spelled=None if found is None else found.words)
+        return changed
 
     def delivered(self, clearance: ClearanceRange | None) -> Self:
         """The same bearing with a clearance that is not stated: the middle of a range, zero without one [m]."""
@@ -246,7 +265,8 @@ def delivered(designation: str, bore: float | None, raceway: float = 0.0) -> Cle
     Raises
     ------
     InputError
-        For a class where there is none, for several classes, and for those of a maker's own.
+        For a class where there is none, for several classes, for those of a maker's own, and for suffixes that change
+        forces in a way that is not served.
 
     Examples
     --------
@@ -257,6 +277,11 @@ def delivered(designation: str, bore: float | None, raceway: float = 0.0) -> Cle
     if found is None:
         return None
     where, name = f"bearing designation: got {short(designation)}", found.clearance
+    refused = [one.words for one in found.affixes if one.effect == REFUSED]
+    if found.hybrid and found.kind not in BALLS:
+        refused.append("rollers of silicon nitride: not yet")
+    if refused:
+        raise InputError(f"{where}, {'; '.join(refused)}; allowed: without it, for the bearing that has none of it")
     if not name:
         return shaft_range(found.kind, raceway) if bore is None else class_range(found.kind, bore)
     why = _MOUNTED.get(found.kind, "" if bore is not None else _NO_RING)

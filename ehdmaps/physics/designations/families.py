@@ -52,7 +52,7 @@ _FAMILIES = tuple(
 _ALL = (*BALLS, *ROLLERS, TAPERED)
 _LONGEST = 60
 _FILE = re.compile(r"\.[a-z]{2,}")
-_NO_ANGLE = re.compile(r"7[023] ?\d\d" + _TAIL)
+_NO_ANGLE = re.compile(r"(?:HC?B?|XCB|B)?7[023] ?\d\d" + _TAIL)
 
 
 def not_served(text: str) -> str:

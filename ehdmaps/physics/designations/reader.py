@@ -1,7 +1,7 @@
 """Kind, plain name and class of radial clearance of a designation, for all kinds that are served; rows of catalogues.
 
-Blanks, hyphens and the suffixes of seals, cages and accuracy do not matter. Those of the radial clearance do: they
-stand for themselves (C3), or behind a class of accuracy (P63).
+Prefixes and suffixes of makers are told one by one, see `affixes`. Those of the radial clearance count: they stand for
+themselves (C3), or behind a class of accuracy (P63); and those of rolling elements of silicon nitride.
 """
 
 from __future__ import annotations
@@ -11,6 +11,8 @@ import tomllib
 from functools import cache
 from importlib import resources
 from typing import Any, NamedTuple
+
+from ehdmaps.physics.designations.affixes import CLEARANCE, HYBRID, Affix, prefix, suffixes
 
 CYLINDRICAL, NEEDLE, NEEDLE_CAGE, DEEP_GROOVE, ANGULAR, TAPERED = (
     "cylindrical roller bearing",
@@ -22,40 +24,27 @@ CYLINDRICAL, NEEDLE, NEEDLE_CAGE, DEEP_GROOVE, ANGULAR, TAPERED = (
 )
 BALLS, ROLLERS, NEEDLES = (DEEP_GROOVE, ANGULAR), (CYLINDRICAL, NEEDLE, NEEDLE_CAGE), (NEEDLE, NEEDLE_CAGE)
 
-# classes of clearance and of accuracy, which every kind has behind its own suffixes
-_EVERY = r"C[2-5]|CN|CM|P[2-6][2-5]?"
-_SEALS = r"2?RS[HLRJ]?[12]?|2?Z|ZZ|DDU|LLU|LLB|VV"
-_CAGES = r"T[VN]?H?P?|TN9?|M|MA|JEM"
-
 
 class _Kind(NamedTuple):
-    """Beginning of the designations of a kind, and its own suffixes."""
+    """Designations of a kind without prefixes and suffixes."""
 
     kind: str
     base: str
-    suffixes: str
 
 
 _KINDS = (
-    _Kind(
-        CYLINDRICAL,
-        r"(NUP|NU|NJ|N)[ -]*(10|22|23|2|3)[ -]?(\d\d)(?:[ .-]*E[A-Z]{0,3})?",
-        "XL|TVP[2-5]?|M1A?|JP[1-3]",
-    ),
-    _Kind(CYLINDRICAL, r"(NCF)[ -]*(30)[ -]?(\d\d)(?:[ -]?C?V)?", "XL"),
-    _Kind(NEEDLE, r"(R?NAV?)[ -]?(49)[ -]?(\d\d)", r"2?RSR?|XL|TN"),
-    _Kind(NEEDLE_CAGE, r"(K) ?(\d+[X*]\d+[X*]\d+)(?:[ -]?TN)?", ""),
-    _Kind(DEEP_GROOVE, r"(6[0234])[ -]?(\d\d)", rf"C(?![A-Z0-9])|{_SEALS}|NR?|{_CAGES}"),
-    _Kind(ANGULAR, r"(7[023])[ -]?(\d\d)[ .-]?(AC|C|B)[ED]?(?:CB|[PMJY])?[PMJY]?", rf"{_SEALS}|NR?|{_CAGES}"),
-    _Kind(
-        TAPERED, r"(?:HR ?)?(302|303|313|320|322|323)[ -]?(\d\d)(?:[ -]?X)?", "J[2R]?|A|XL|Q|JR|DY|CL7[AC]"
-    ),
-)  # fmt: skip
-_PATTERNS = tuple(
-    (row.kind, re.compile(row.base + rf"((?:[ .,/-]*(?:{'|'.join(filter(None, (row.suffixes, _EVERY)))}))*)"))
-    for row in _KINDS
+    _Kind(CYLINDRICAL, r"(NUP|NU|NJ|N)[ -]*(10|22|23|2|3)[ -]?(\d\d)"),
+    _Kind(CYLINDRICAL, r"(NCF)[ -]*(30)[ -]?(\d\d)(?:[ -]?C?V)?"),
+    _Kind(NEEDLE, r"(R?NAV?)[ -]?(49)[ -]?(\d\d)"),
+    _Kind(NEEDLE_CAGE, r"(K) ?(\d+[X*]\d+[X*]\d+)"),
+    _Kind(DEEP_GROOVE, r"(6[0234])[ -]?(\d\d)"),
+    _Kind(ANGULAR, r"(7[023])[ -]?(\d\d)[ .-]?(A5|AC|C|B|E)"),
+    _Kind(TAPERED, r"(302|303|313|320|322|323)[ -]?(\d\d)(?:[ -]?X)?"),
 )
+_PATTERNS = tuple((row.kind, re.compile(rf"(.*?){row.base}(?![0-9])(.*)")) for row in _KINDS)
 _CLASS = re.compile(r"C([2-5NM])|P[2-6]([2-5])")
+_OF_SPINDLES = ("B", "HCB", "XCB")
+"""Prefixes of a maker whose suffix E is an angle of 25 degrees."""
 
 
 class Designation(NamedTuple):
@@ -70,22 +59,36 @@ class Designation(NamedTuple):
     clearance : str
         Class of radial clearance, such as "C3"; empty where the designation has none. Several behind each other where
         it has several.
+    affixes : tuple of Affix
+        What stands before and behind it.
     """
 
     kind: str
     parts: tuple[str, ...]
     clearance: str
+    affixes: tuple[Affix, ...] = ()
 
     @property
     def name(self) -> str:
-        """Designation without blanks and suffixes, such as "NU210" or "K40x48x20"."""
+        """Designation without blanks and suffixes, such as "NU210" or "K40x48x20"; HC behind it for hybrid bearings."""
         name = "".join(self.parts)
-        return re.sub("[X*]", "x", name) if self.kind == NEEDLE_CAGE else name
+        name = re.sub("[X*]", "x", name) if self.kind == NEEDLE_CAGE else name
+        return name + HC if self.hybrid else name
 
     @property
     def text(self) -> str:
         """The same with its class of clearance, such as "NU210 C3"."""
         return f"{self.name} {self.clearance}".rstrip()
+
+    @property
+    def hybrid(self) -> bool:
+        """Whether its rolling elements are of silicon nitride."""
+        return any(one.effect == HYBRID for one in self.affixes)
+
+    @property
+    def words(self) -> str:
+        """What each part means."""
+        return "; ".join((f"{''.join(self.parts)}: {self.kind}", *(one.words for one in self.affixes)))
 
 
 def read_designation(text: str) -> Designation | None:
@@ -100,15 +103,35 @@ def read_designation(text: str) -> Designation | None:
     --------
     >>> [read_designation(text).text for text in ("nu 308 ecp/C4", "6205-2RSH/C3", "6208 P63", "HR 32008 XJ")]
     ['NU308 C4', '6205 C3', '6208 C3', '32008']
+    >>> [read_designation(text).text for text in ("B7005-C-T-P4S", "7014 CD/HCP4A", "HCB7014-E-T-P4S")]
+    ['7005C', '7014C HC', '7014AC HC']
     >>> read_designation("22208")
     """
     upper = text.strip().upper()
+    if len(upper) > _LONGEST:
+        return None
     for kind, pattern in _PATTERNS:
-        if match := pattern.fullmatch(upper):
-            *parts, suffixes = match.groups()
-            classes = dict.fromkeys("C" + (own or behind) for own, behind in _CLASS.findall(suffixes))
-            return Designation(kind, tuple(parts), " ".join(classes))
+        match = pattern.fullmatch(upper)
+        if match is None:
+            continue
+        before, *parts, behind = match.groups()
+        first, last = prefix(before, kind) if before else None, suffixes(behind, kind)
+        if last is None or (before and first is None):
+            continue
+        if kind == ANGULAR:
+            if parts[2] == "E" and before.strip(" -") not in _OF_SPINDLES:
+                continue
+            parts[2] = {"E": "AC", "A5": "AC"}.get(parts[2], parts[2])
+        affixes = (*([first] if first else []), *last)
+        named = [one.text for one in affixes if one.effect == CLEARANCE]
+        classes = dict.fromkeys("C" + "".join(found.groups("")) for one in named if (found := _CLASS.match(one)))
+        return Designation(kind, tuple(parts), " ".join(classes), affixes)
     return None
+
+
+_LONGEST = 60
+HC = " HC"
+"""End of the names of bearings with balls of silicon nitride."""
 
 
 def bore_code(bore: float) -> str:

@@ -62,6 +62,8 @@ class BallGeometry(Named):
     clearance_range : ClearanceRange or None
         What the clearance may be by the designation; no part of what makes bearings equal, nor of records. None where
         it is stated.
+    spelled : str or None
+        What each part of the designation means; no part of what makes bearings equal, nor of records.
     ball_material, ring_material : Material or None
         Materials of balls and of both rings; None: those that a question states, steel by default.
 
@@ -90,6 +92,7 @@ class BallGeometry(Named):
     label: str | None = field(default=None, compare=False)
     estimated: str | None = None
     clearance_range: ClearanceRange | None = field(default=None, compare=False)
+    spelled: str | None = field(default=None, compare=False)
     ball_material: Material | None = None
     ring_material: Material | None = None
 

@@ -167,6 +167,7 @@ def with_ribs(bearing: BearingGeometry, carries: str = "both", axial_clearance: 
         axial_clearance=axial_clearance,
         diametral_clearance=bearing.diametral_clearance,
         clearance_range=bearing.clearance_range,
+        spelled=bearing.spelled,
     )
 
 

@@ -107,7 +107,8 @@ def tapered_estimate(designation: str) -> TaperedGeometry:
     rollers = with_static_rating(found.diameter, count, pitch, entry.static_rating, angle)
     sentence = f"inner geometry estimated from catalogue dimensions and NSK's ratings (ISO 76, ISO 281): {ERRORS}"
     name = plain_name(designation, (TAPERED,))
-    return TaperedGeometry(name, rollers.diameter, rollers.length, pitch, count, angle, estimated=sentence)
+    bearing = TaperedGeometry(name, rollers.diameter, rollers.length, pitch, count, angle, estimated=sentence)
+    return bearing.typed(designation)
 
 
 def mirrored(geometry: TaperedGeometry) -> TaperedGeometry:

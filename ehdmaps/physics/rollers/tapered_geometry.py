@@ -93,6 +93,8 @@ class TaperedGeometry(Named):
     estimated : str or None
         How its inner geometry was estimated and how well, see `ehdmaps.physics.rollers.tapered_catalogue`; None where
         it is known.
+    spelled : str or None
+        What each part of the designation means; no part of what makes bearings equal, nor of records.
 
     Raises
     ------
@@ -117,6 +119,7 @@ class TaperedGeometry(Named):
     rib_height: float | None = None
     label: str | None = field(default=None, compare=False)
     estimated: str | None = None
+    spelled: str | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         problems = _problems(self)

@@ -74,7 +74,7 @@ def heading(kind: Kind, description: Description, point: Any) -> list[str]:
         f"{geometry.title}: law {description.law}; {description.films}",
         *(f"  {line}" for line in kind.about(description, point)),
         *([f"  assumed: {', '.join(description.assumed)}"] if description.assumed else []),
-        *([f"  {geometry.estimated}"] if geometry.estimated else []),
+        *(f"  {words}" for words in (geometry.spelled, geometry.estimated) if words),
     ]
 
 

@@ -1,0 +1,112 @@
+"""What stands before and behind the plain designation of a bearing: seals, cages, accuracy, materials, clearance.
+
+Meanings are rows of a file. Suffixes may stand behind each other without a blank; one that is in no row is read where a
+blank, a hyphen, a stroke or a dot sets it apart, and told.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from functools import cache
+from importlib import resources
+from typing import NamedTuple
+
+HYBRID, CLEARANCE, MOUNTING, REFUSED, UNKNOWN = "hybrid", "clearance", "mounting", "refused", "unknown"
+"""What a prefix or suffix does beside having a meaning; empty where forces do not know it."""
+
+
+class Affix(NamedTuple):
+    """A prefix or suffix.
+
+    Attributes
+    ----------
+    text : str
+        As it was typed, in capitals.
+    meaning : str
+        What it means.
+    effect : str
+        What it does: see `HYBRID`.
+    """
+
+    text: str
+    meaning: str
+    effect: str
+
+    @property
+    def words(self) -> str:
+        """Text and meaning."""
+        return f"{self.text}: {self.meaning}"
+
+
+class _Row(NamedTuple):
+    """Row of the file."""
+
+    pattern: re.Pattern[str]
+    meaning: str
+    effect: str
+
+
+@cache
+def _rows(place: str, kind: str) -> tuple[_Row, ...]:
+    """Rows of prefixes ("before") or suffixes ("behind") of a kind, those of every kind behind its own."""
+    text = (resources.files("ehdmaps.physics") / "shipped" / "designations.toml").read_text(encoding="utf-8")
+    table = tomllib.loads(text)[place]
+    rows = [*table.get(kind, ()), *table["every"]]
+    return tuple(_Row(re.compile(row[0]), row[1], row[2] if len(row) > 2 else "") for row in rows)
+
+
+def prefix(text: str, kind: str) -> Affix | None:
+    """The prefix of a kind; None for what is none.
+
+    Parameters
+    ----------
+    text : str
+        What stands before the designation, in capitals.
+    kind : str
+        Kind of the bearing.
+
+    Examples
+    --------
+    >>> prefix("HCB", "angular contact ball bearing").effect
+    'hybrid'
+    """
+    text = text.strip(" ")
+    return next((Affix(text, row.meaning, row.effect) for row in _rows("before", kind) if _whole(row, text)), None)
+
+
+def _whole(row: _Row, text: str) -> bool:
+    """Tell whether a row has the text, with or without a hyphen."""
+    return any(row.pattern.fullmatch(one) for one in (text, text.rstrip("-"), f"{text}-"))
+
+
+def suffixes(text: str, kind: str) -> tuple[Affix, ...] | None:
+    """The suffixes of a designation, one by one; None where one is not set apart and in no row.
+
+    Parameters
+    ----------
+    text : str
+        What stands behind the designation, in capitals.
+    kind : str
+        Kind of the bearing.
+
+    Examples
+    --------
+    >>> [one.text for one in suffixes("-2RSLTN9/HC5C3", "deep groove ball bearing")]
+    ['2RSL', 'TN9', 'HC5', 'C3']
+    >>> suffixes(" 2RS GE9", "deep groove ball bearing")[1].effect, suffixes("X", "deep groove ball bearing")
+    ('unknown', None)
+    """
+    body = text.lstrip(" .,/-")
+    if not body:
+        return ()
+    found = [(row.pattern.match(body), row) for row in _rows("behind", kind)]
+    known = sorted(((one.end(), row) for one, row in found if one), key=lambda each: -each[0])
+    for end, row in known:
+        rest = suffixes(body[end:], kind)
+        if rest is not None:
+            return (Affix(body[:end], row.meaning, row.effect), *rest)
+    alone = re.match("[A-Z0-9]+", body) if body != text else None
+    if alone is None or (rest := suffixes(body[alone.end() :], kind)) is None:
+        return None
+    return (Affix(alone[0], "not understood, and left out", UNKNOWN), *rest)
