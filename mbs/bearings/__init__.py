@@ -18,7 +18,7 @@ force                `force_at_point`,        `ball_bearing`            `tapered
 as bodies            `roller_contacts`
 speeds, energy       `roller_spin`,           `ball_speed`,             `tapered_bearing`
                      `contact_energy`         `ball_motion`
-element              `bearing_element`,       `ball_element`            `tapered_element`       `locating_element`
+element              `bearing_element`,       as ribbed                 as balls                `locating_element`
                      `roller_element`
 films with memory    `memory_element`         `ball_memory`             `tapered_memory`
 small motions        `slices_in_balance`      `balls_in_balance`        `rollers_in_balance`

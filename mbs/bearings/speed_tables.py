@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -306,10 +306,6 @@ def _told(sound: bool, outside: bool, numbers: FloatArray) -> Made:
     return Made(sound, outside, 2 * int(numbers[_KIND]) + int(outside))
 
 
-ArraysOfFilms = TypeVar("ArraysOfFilms", bound=Any)
-"""Named tuple of arrays with the fields `films`, tables of the laws, and `course`, a `Course`."""
-
-
 class Course(NamedTuple):
     """Places of the tables of some steps.
 
@@ -444,35 +440,3 @@ def shared(keys: Iterable[tuple[object, ...]]) -> tuple[list[int], list[int]]:
             firsts.append(place)
         films_of.append(numbers[key])
     return films_of, firsts
-
-
-class FilmBlock(Generic[ArraysOfFilms]):
-    """Bearings of a run that look their films up in tables over the speed; see `mbs.model.blocks.Block`.
-
-    Parameters
-    ----------
-    course : CourseOfFilms
-        Places of the tables, step after step.
-    arrays : named tuple
-        The bearings, with `films` and `course`.
-    """
-
-    def __init__(self, course: CourseOfFilms, arrays: ArraysOfFilms) -> None:
-        self._course, self._arrays = course, arrays
-
-    def begin(self, speeds: FloatArray) -> None:
-        """Find the places of the speeds [rad/s] on the tables."""
-        self._course.begin(speeds)
-
-    def prepare(self, first: int, last: int) -> tuple[ArraysOfFilms, BoolArray]:
-        """Make the tables of the next steps, as many as are held at once.
-
-        Parameters
-        ----------
-        first, last : int
-            Steps of those that `begin` was told.
-        """
-        course, sound = self._course.prepare(first, last)
-        # To be mixed anew at its next turn: a turn of its own would be a kick.
-        self._arrays.films.in_use[:, 1] = math.nan
-        return self._arrays._replace(course=course), sound

@@ -223,11 +223,11 @@ class ExudynBallBearing(_Connector):
     """
 
     def __init__(self, force: BallForce, start_angle: float = 0.0) -> None:
-        from mbs.bearings.balls.ball_element import MachineBalls
+        from mbs.bearings.locating.locating_element import LocatingElement
 
         super().__init__(start_angle)
         self.force = force
-        self._balls = MachineBalls("bearing", "inner", "outer", force, start_angle=start_angle)
+        self._balls = LocatingElement("bearing", "inner", "outer", force, start_angle=start_angle)
 
     def _force(
         self, pose: FloatArray, rate: FloatArray, angle: float, speed: float, time: float

@@ -273,14 +273,11 @@ class OnRings(ElementDefaults):
     ----------
     locating : bool
         Whether it holds the ring along the axis, once its clearance is taken up.
-    rolling_element : str
-        How one of its rolling elements is called: roller, ball.
     memory_words : str
         What describes films with memory, and leaves the rest of their response out.
     """
 
     locating: ClassVar[bool] = False
-    rolling_element: ClassVar[str] = "roller"
     memory_words: ClassVar[str] = "springs and dampers of films with memory leave"
 
     if TYPE_CHECKING:  # a property at run time would be the default of the fields of this name
@@ -288,6 +285,11 @@ class OnRings(ElementDefaults):
         @property
         def name(self) -> str:
             """Name of the element."""
+
+    @property
+    def rolling_element(self) -> str:
+        """Name of one of its rolling elements: roller, ball."""
+        return "roller"
 
     @property
     def relaxes(self) -> bool:

@@ -271,7 +271,7 @@ def needed_ranges(
     bearing: Any
     for index, bearing in enumerate(bearings):
         mapped = isinstance(bearing, BearingElement)
-        key: object = same_contacts(bearing.bearing.geometry) if mapped else bearing.same_films
+        key: object = same_contacts(bearing.bearing.geometry) if mapped else bearing.force.same_films
         groups.setdefault(key, []).append(index)
     found = []
     for members in groups.values():
@@ -285,7 +285,11 @@ def needed_ranges(
                 "clearance"
             )
         one: Any = bearings[members[0]]
-        mapped, of_points, highest = isinstance(one, BearingElement), getattr(one, "of_points", False), margin * load
+        mapped, of_points, highest = (
+            isinstance(one, BearingElement),
+            getattr(one.force, "of_points", False),
+            margin * load,
+        )
         found.append(
             Needed(
                 geometry=one.bearing.geometry if mapped else one.force.geometry,

@@ -14,10 +14,10 @@ from ehdmaps.physics.surface import Surface
 from ehdmaps.report.chart import number, shown
 from ehdmaps.report.page import Markup, joined, pairs, table, tag
 from ehdmaps.units import DAMPER, FILM, PRESSURE, SPRING, Display
-from mbs.bearings.balls.ball_element import MachineBalls
+from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.contact_report import BearingContacts, RollingLoss
-from mbs.bearings.locating.locating_element import LocatingElement, Settled
-from mbs.bearings.tapered.tapered_element import TaperedElement
+from mbs.bearings.locating.locating_force import LocatingForce, Settled
+from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.output.one_bearing.located import located
 from mbs.output.state_text import DAMPINGS, STIFFNESSES, life_lines, loss_words
 from mbs.report.examination import Examination
@@ -53,11 +53,11 @@ def _rollers(at: Settled, _: BearingContacts) -> _Told:
     return _Told((), (("highest load of the ribs", shown(FORCE, float(ribs.max()))),), columns)
 
 
-_OWN: dict[type[LocatingElement], Callable[[Settled, BearingContacts], _Told]] = {
-    MachineBalls: _balls,
-    TaperedElement: _rollers,
+_OWN: dict[type[LocatingForce], Callable[[Settled, BearingContacts], _Told]] = {
+    BallForce: _balls,
+    TaperedForce: _rollers,
 }
-"""By class of the bearing."""
+"""By class of the force."""
 
 
 def located_bearings(found: Examination) -> Iterator[Markup]:
@@ -75,7 +75,7 @@ def located_bearings(found: Examination) -> Iterator[Markup]:
         located(model, balance), statics.contacts[first:], statics.losses[first:], strict=True
     ):
         force, loads, one = balance.forces[place], at.loads.load[:2], element.rolling_element
-        own = _OWN[type(element)](at, contacts)
+        own = _OWN[type(at.force)](at, contacts)
         across = shown(FORCE, math.hypot(*force[1:3]))
         rows = [
             ("force on the inner ring", f"{number(force[0], 4)} N along x, {across} across"),

@@ -323,7 +323,7 @@ class Model:
     @property
     def balls(self) -> tuple[LocatingElement, ...]:
         """Those of balls among them."""
-        return tuple(entry for entry in self.located if entry.of_points)
+        return tuple(entry for entry in self.located if entry.force.of_points)
 
     @property
     def ring_places(self) -> tuple[int, ...]:

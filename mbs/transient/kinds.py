@@ -10,15 +10,16 @@ Python's lock, but leave the rest of the step to C.
 
 from __future__ import annotations
 
+from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_block import BALLS
-from mbs.bearings.balls.ball_element import MachineBalls
 from mbs.bearings.bearing_block import BEARINGS, ROLLERS
 from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.bearings.memory_block import MEMORY_BEARINGS, MEMORY_ROLLERS
 from mbs.bearings.memory_element import MemoryBearing, MemoryRollers
 from mbs.bearings.roller_element import RollerElement
+from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_block import TAPERED
-from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.gears.gear import GearMesh
 from mbs.gears.gear_block import GEAR_MESHES
 from mbs.model.blocks import Kind
@@ -31,15 +32,18 @@ KINDS: dict[type, Kind] = {
     MemoryBearing: MEMORY_BEARINGS,
     RollerElement: ROLLERS,
     MemoryRollers: MEMORY_ROLLERS,
-    MachineBalls: BALLS,
-    TaperedElement: TAPERED,
+    BallForce: BALLS,
+    TaperedForce: TAPERED,
     GearMesh: GEAR_MESHES,
     MatrixElement: MATRICES,
 }
-"""Kind by the class of its elements. ``KINDS[Coupling] = COUPLINGS`` adds one."""
+"""Kind by the class of its elements, of a `LocatingElement` by that of its force.
+
+``KINDS[Coupling] = COUPLINGS`` adds one.
+"""
 
 
 def kind_of(element: Element) -> Kind | None:
     """Kind of an element in compiled code; None if it has none. A class that inherits from a known one is another."""
-    kind = KINDS.get(type(element))
+    kind = KINDS.get(type(element.force if isinstance(element, LocatingElement) else element))
     return kind if kind is not None and kind.takes(element) else None

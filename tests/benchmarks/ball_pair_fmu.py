@@ -26,8 +26,8 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from mbs.bearings.balls.ball_bearing import BallForce
-from mbs.bearings.balls.ball_element import MachineBalls
 from mbs.bearings.balls.films import ball_films
+from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.cli import main as mbs
 from mbs.model.elements import Operation
 from tests.cases.fmu import Unit
@@ -69,7 +69,7 @@ def in_python() -> Force:
     elements = {}
     for way in (-1.0, 1.0):
         geometry = dataclasses.replace(nominal, contact_angle=way * nominal.contact_angle)
-        elements[way] = MachineBalls("bearing", "inner", "outer", BallForce(geometry, law))
+        elements[way] = LocatingElement("bearing", "inner", "outer", BallForce(geometry, law))
 
     def force(way: float, pose: FloatArray, velocity: FloatArray, now: float) -> FloatArray:
         place, rate = np.zeros((2, 6))

@@ -86,8 +86,8 @@ def torques(name: str, radial: float, axial: float, speed: float) -> tuple[list[
         at = TaperedPoint.at(tapered, (axial, radial, 0.0), speed)
         losses = [
             roller_contacts(
-                tapered, at.elements, FilmsOfLines(tapered.geometry, OilOfLines("table", OIL, KELVIN, 40.0, one)).lines,
-                (speed, 0.0), KELVIN,
+                tapered, at.elements, FilmsOfLines(tapered.geometry, OilOfLines("table", OIL, KELVIN, 40.0, one)),
+                (speed, 0.0),
             )[1]
             for one in SUPPLIES
         ]  # fmt: skip
@@ -96,7 +96,7 @@ def torques(name: str, radial: float, axial: float, speed: float) -> tuple[list[
         balls = BallForce(geometry, dry_law(geometry))
         ball = BallPoint.at(balls, (axial, radial, 0.0), speed)
         losses = [
-            ball_contacts(balls, ball.elements, FilmsOfPoints(geometry, OIL, KELVIN, one).points, (speed, 0.0))[1]
+            ball_contacts(balls, ball.elements, FilmsOfPoints(geometry, OIL, KELVIN, one), (speed, 0.0))[1]
             for one in SUPPLIES
         ]
     return [1e3 * loss.torque for loss in losses], 1e3 * losses[0].sliding_torque

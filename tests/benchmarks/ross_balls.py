@@ -76,7 +76,7 @@ def target(name: str) -> Path:
 def tables(name: str) -> None:
     """Write the tables of the bearings of a machine."""
     from mbs import assemble, read_scene
-    from mbs.bearings.balls.ball_element import MachineBalls
+    from mbs.bearings.locating.locating_element import LocatingElement
     from mbs.model.elements import Operation
     from mbs.model.equilibrium import equilibrium
 
@@ -87,7 +87,7 @@ def tables(name: str) -> None:
         rest = equilibrium(model.system, at)
         for entry in model.system.elements:
             element = entry.element
-            if isinstance(element, MachineBalls):
+            if isinstance(element, LocatingElement):
                 answer = element.evaluate(entry.transform @ rest.displacement, np.zeros(6), at)
                 rows = np.ix_((1, 2), (1, 2))
                 found[element.name].append((answer.stiffness[rows], answer.damping[rows]))

@@ -12,8 +12,8 @@ from scipy import optimize
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.solids import STEEL
 from mbs.bearings.balls.ball_bearing import BallForce
-from mbs.bearings.balls.ball_element import MachineBalls
 from mbs.bearings.balls.laws import dry_law
+from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
 from mbs.model.equilibrium import equilibrium
@@ -35,7 +35,7 @@ def rest(geometry, load, speed=0.0, free=FREE, law=None, arm=None, outer_speed=0
     force = BallForce(geometry, law or dry_law(geometry))
     if arm is not None:
         force.shape = force.shape._replace(arm=arm)
-    element = MachineBalls("bearing", "ring", "ground", force, outer_spin=outer_speed / speed if speed else 0.0)
+    element = LocatingElement("bearing", "ring", "ground", force, outer_spin=outer_speed / speed if speed else 0.0)
     ring = rigid_body("ring", [Inertia(1.0, 1.0, 1.0)], [FREEDOMS[i] for i in free])
     given = Load("load", "ring", np.array(load, dtype=float))
     found = equilibrium(System([ring], loads=[given], elements=[element]), Operation(speed))

@@ -17,7 +17,6 @@ from ehdmaps.physics.solids import STEEL
 from mbs import assemble, modes, parse_scene, statics
 from mbs.bearings.contact_report import BearingContacts, loss_of
 from mbs.bearings.films import ContactState
-from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.bearings.locating.locating_force import LocatingForce, directions
 from mbs.model.elements import Operation
 from mbs.model.findings import Cause, Gauge
@@ -30,13 +29,17 @@ from tests.conformance.machines import HEAD, TAIL
 STIFFNESS, ANGLE, PADS = 2e8, 0.5, 12
 
 NAMED = {
+    "commands/one_bearing/balls.py",
+    "commands/one_bearing/ribs.py",
     "exports/exudyn.py",  # a file for another program, of balls alone
+    "exports/one_bearing/balls.py",
+    "exports/one_bearing/rollers.py",
     "output/one_bearing/located.py",
     "report/located.py",
     "scene/locating/element.py",
     "transient/kinds.py",  # with a block in C: without one, runs call it from Python
 }
-"""Files of `mbs` that name elements of one kind, outside of the room of the kind: its rows."""
+"""Files of `mbs` that name forces of one kind, outside of the room of the kind: its rows."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +64,7 @@ class Pads:
 class PadForce(LocatingForce):
     """The kinematics, and the balance, which is a spring for each pad."""
 
-    rolling_element = "pad"
+    rolling_element, dry_law = "pad", None
 
     def __init__(self):
         self.geometry, self.material, self.angles = Pads(), STEEL, directions(PADS)
@@ -88,27 +91,19 @@ class PadForce(LocatingForce):
     def last_loads(self):
         return np.array([self._load, self._load])
 
+    def gauge(self, loads):
+        return Gauge("pad", loads.load, np.full(2, 1e9), 4e9)
+
+    def felt(self, loads, films, speeds):
+        values = loads.load[0][:, None]
+        side = ContactState(1e6 * values, 1e6 * values, *np.full((3, PADS, 1), np.nan), 0.0 * values)
+        return BearingContacts(side, side), loss_of(np.full((2, PADS), np.nan), loads.load[0], 1.0)
+
     def work(self, speeds, last):
         return 0.0
 
     def stored(self):
         return float(self._load @ self._load) / (2.0 * STIFFNESS)
-
-
-@dataclass(frozen=True, eq=False)
-class PadElement(LocatingElement):
-    """What analyses ask of its contacts."""
-
-    rolling_element = "pad"
-    dry_law = None
-
-    def gauge_at(self, at):
-        return Gauge("pad", at.loads.load, np.full(2, 1e9), 4e9)
-
-    def felt_at(self, at):
-        values = at.loads.load[0][:, None]
-        side = ContactState(1e6 * values, 1e6 * values, *np.full((3, PADS, 1), np.nan), 0.0 * values)
-        return BearingContacts(side, side), loss_of(np.full((2, PADS), np.nan), at.loads.load[0], 1.0)
 
 
 @dataclass(frozen=True)
@@ -124,11 +119,9 @@ def model(monkeypatch):
     row = next(kind for kind in kinds.KINDS if kind.word == "ball bearing")
     monkeypatch.setattr(kinds, "KINDS", (*kinds.KINDS, dataclasses.replace(row, word="pad bearing", spec=PadSpec)))
     balls = next(iter(of_scenes._KINDS.values()))
-    pads = dataclasses.replace(
-        balls, element=PadElement, words=lambda spec: spec.geometry.kind, force=lambda spec, damper: PadForce()
-    )
+    pads = dataclasses.replace(balls, words=lambda spec: spec.geometry.kind, force=lambda spec, damper: PadForce())
     monkeypatch.setitem(of_scenes._KINDS, PadSpec, pads)
-    monkeypatch.setitem(located._WORDS, PadElement, lambda at: (f"{PADS} pads", []))
+    monkeypatch.setitem(located._WORDS, PadForce, lambda at: (f"{PADS} pads", []))
     text = HEAD.format(name="pads", freedoms='["x", "y", "z"]') + TAIL.replace("{load}", '["3 kN", "1 kN", "0 N"]')
     scene = parse_scene(text, "pads", "pads.toml")
     each = [PadSpec(side, f"rotor:{side}", "ground", Pads()) for side in ("left", "right")]
@@ -176,6 +169,6 @@ def test_elements_of_a_kind_are_named_in_their_rows_alone():
             continue
         names = {node.id for node in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(node, ast.Name)}
         texts = {node.value for node in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(node, ast.Constant)}
-        if {"MachineBalls", "TaperedElement"} & (names | {text for text in texts if isinstance(text, str)}):
+        if {"BallForce", "TaperedForce"} & (names | {text for text in texts if isinstance(text, str)}):
             found.add(place)
     assert found == NAMED

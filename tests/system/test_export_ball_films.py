@@ -17,10 +17,10 @@ from ehdmaps.exports.fmu.binaries import platforms
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from mbs.bearings.balls.ball_bearing import BallForce
-from mbs.bearings.balls.ball_element import MachineBalls
 from mbs.bearings.balls.ball_point import BallPoint
 from mbs.bearings.balls.films import ball_films
 from mbs.bearings.balls.laws import dry_law
+from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.cli import main
 from mbs.commands.one_bearing.balls import BALL_BEARINGS
 from mbs.commands.one_bearing.files import Export, write_export
@@ -43,7 +43,7 @@ def element():
     def films(inner, outer):
         return law
 
-    return MachineBalls("b", "i", "o", BallForce(geometry, dry_law(geometry)), films=films, memory="memory")
+    return LocatingElement("b", "i", "o", BallForce(geometry, dry_law(geometry)), films=films, memory="memory")
 
 
 @pytest.fixture(scope="module")

@@ -19,9 +19,9 @@ from ehdmaps.jobs.cli import main as export
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from mbs.bearings.balls.ball_bearing import BallForce
-from mbs.bearings.balls.ball_element import MachineBalls
 from mbs.bearings.balls.films import ball_films
 from mbs.bearings.balls.laws import dry_law
+from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.cli import main
 from mbs.exports.one_bearing.balls import BALLS
 from mbs.exports.one_bearing.source import source_texts, write_source
@@ -111,7 +111,7 @@ def test_cage_settles_as_in_machines(exported):
     geometry, laws, kernel = exported["7208B"]
     kernel.make(0.0)
     pose = np.array([20e-6, 4e-6, -3e-6, 0.0, 1e-4, 0.0])
-    element = MachineBalls("b", "i", "o", BallForce(geometry, dry_law(geometry)), films=None)
+    element = LocatingElement("b", "i", "o", BallForce(geometry, dry_law(geometry)), films=None)
     for speed in (200.0, 600.0):
         force = BallForce(geometry, laws.at(geometry.entrainment_speed(speed)))
         element = dataclasses.replace(element, force=force)
@@ -183,7 +183,7 @@ def unpacked(units, tmp_path_factory):
 def element_of(geometry):
     """The bearing of the units in a machine."""
     force = BallForce(geometry, dry_law(geometry, damping_time=DAMPER))
-    return MachineBalls("b", "i", "o", force, outer_spin=OUTER)
+    return LocatingElement("b", "i", "o", force, outer_spin=OUTER)
 
 
 @pytest.mark.parametrize("fmi", ["2", "3"])

@@ -15,9 +15,9 @@ from ehdmaps.errors import InputError
 from ehdmaps.exports.fmu.binaries import platforms
 from ehdmaps.physics.rollers.ribbed_geometry import mirrored_ribs, ribbed_estimate
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
+from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.bearings.tapered.line_film import LineFilms
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
-from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.cli import main
 from mbs.exports.one_bearing.rollers import RIBBED, TAPERED
 from mbs.exports.one_bearing.source import source_texts, write_source
@@ -194,7 +194,7 @@ def units(tmp_path_factory):
 def element_of(geometry, offset=0.0):
     """The bearing of the units in a machine."""
     force = TaperedForce(geometry, 0.0, DAMPER)
-    return TaperedElement("b", "i", "o", force, outer_spin=OUTER, axial_offset=offset)
+    return LocatingElement("b", "i", "o", force, outer_spin=OUTER, axial_offset=offset)
 
 
 @pytest.mark.parametrize("mirrored", [False, True])

@@ -14,8 +14,8 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.rollers.ribbed_geometry import ribbed_estimate
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
 from mbs.bearings.locating.locating_block import FELT
+from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
-from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.cli import main
 from mbs.model.elements import Operation
 from mbs.scene.locating.line_films import FilmsOfLines, OilOfLines
@@ -33,7 +33,7 @@ def test_unit_in_time_is_the_element(tmp_path, name, fmi):
     geometry = tapered_estimate(name) if name[0].isdigit() else ribbed_estimate(name)
     force = TaperedForce(geometry)
     oil = OilOfLines("table", Lubricant.named("FVA3"), WARM, 1.05 * geometry.entrainment_speed(SPEED))
-    element = TaperedElement("b", "i", "o", force, films=FilmsOfLines(geometry, oil), memory="memory")
+    element = LocatingElement("b", "i", "o", force, films=FilmsOfLines(geometry, oil), memory="memory")
     path = tmp_path / ("b.fmu" if fmi == "2" else "b.fmi3.fmu")
     words = ("--load", "1 kN", "--axial", "2 kN", "--temperature", "60 degC", "--speed", "3000 rpm", "--oil", "FVA3")
     with mock.patch("ehdmaps.exports.fmu.unit.platforms", return_value=platforms()[:1]):

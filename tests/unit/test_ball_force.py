@@ -15,8 +15,8 @@ import pytest
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from mbs.bearings.balls.ball_bearing import BallForce
-from mbs.bearings.balls.ball_element import MachineBalls
 from mbs.bearings.balls.laws import dry_law
+from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.bearings.locating.locating_force import FASTEST
 from mbs.model.elements import Operation
 from tests.cases.balls import ANGULAR, BEARINGS, DEEP, FREE, LOOSE, OTHER_WAY, rest
@@ -226,7 +226,7 @@ def test_dampers_that_are_none_are_refused(name, value) -> None:
 
 def test_element_turns_with_the_system() -> None:
     force = force_of("deep")
-    element = MachineBalls("bearing", "ring", "ground", force, inner_spin=2.0)
+    element = LocatingElement("bearing", "ring", "ground", force, inner_spin=2.0)
     conditions = element.conditions(Operation(10.0, 3.0))
     assert conditions["inner_speed"] == 20.0
     assert conditions["cage_angle"] == pytest.approx(3.0 * DEEP.cage_speed(2.0), rel=1e-14)

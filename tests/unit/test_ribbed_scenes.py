@@ -10,8 +10,8 @@ import pytest
 from ehdmaps.errors import InputError
 from ehdmaps.physics.rollers.ribbed_geometry import ribbed_estimate
 from mbs import assemble, parse_scene
+from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
-from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.cli import main
 from mbs.linearised.modes import modes
 from mbs.model.equilibrium import equilibrium
@@ -87,7 +87,7 @@ def test_ribs_hold_a_mass_along_x(keys, way) -> None:
     """Rest and axial mode by the force of the bearing alone; the pose is where both meet."""
     machine = model(**keys)
     (element,) = (connected.element for connected in machine.system.elements)
-    assert isinstance(element, TaperedElement)
+    assert isinstance(element, LocatingElement)
     balance = equilibrium(machine.system, machine.operation)
     profile = machine.scene.located[0].profile
     alone = TaperedForce(ribbed_estimate("NUP210"), profile=profile, slices=41)

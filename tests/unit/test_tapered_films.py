@@ -22,6 +22,7 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.locating.locating_block import FELT
+from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.bearings.locating.normal_law import contact
 from mbs.bearings.roller_contacts import RollerContacts
 from mbs.bearings.slices_in_balance import relaxation_times, slice_relaxation
@@ -29,7 +30,6 @@ from mbs.bearings.tapered.line_film import LOADS, LineFilms, line_films
 from mbs.bearings.tapered.rollers_in_balance import line_relaxation
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_block import TAPERED, TaperedBlock
-from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.linearised.linear import frequency_response, state_space
 from mbs.linearised.modes import modes
 from mbs.model.blocks import FOUND, Member, Moment
@@ -151,7 +151,7 @@ def test_compiled_block_is_the_element_with_films():
     """At one speed the same table; over the speed straight in ln g between nodes that are 4 % apart, which is wrong by
     at most (0.67 * 0.04)^2/8 = 9e-5 of the films, and these are a tenth of the approach."""
     element = scene().system.elements[0].element
-    assert isinstance(element, TaperedElement)
+    assert isinstance(element, LocatingElement)
     block, one = TaperedBlock([Member(element, 0, 0)]), np.array([400.0])
     block.begin(one)
     for speeds, steps, within in (
@@ -188,7 +188,7 @@ def test_films_of_slow_motion_say_from_where_they_are_wrong(emap, films):
     assert film_errors(scene("hertz"), balance.displacement, machine.operation) == []
 
     plain = TaperedForce(TaperedGeometry("plain", 10e-3, 15e-3, 60e-3, 17, 0.0), profile="straight")
-    ours = TaperedElement("ours", "ring", "ground", plain, films=lambda *_: films)
+    ours = LocatingElement("ours", "ring", "ground", plain, films=lambda *_: films)
     bearing = Bearing(CYLINDER, "straight", 21)
     theirs = BearingElement(
         "theirs", "ring", "ground", bearing, BearingForce(bearing, emap.law("series", "clamp")), WARM, films="slow"
@@ -250,7 +250,7 @@ def test_memory_is_that_of_all_slices_with_rollers_in_balance(films, geometry):
         pose = random.uniform(-1.0, 1.0, 6) * np.array([8e-6, 15e-6, 15e-6, 0.0, 1e-4, 1e-4])
         pose[0] += 12e-6 * math.copysign(1.0, geometry.contact_angle)
         _, stiffness, damping = force(pose, cage_angle=0.1, inner_speed=300.0)
-        relaxation = line_relaxation(force, 0.1)
+        relaxation = line_relaxation(force, None, {"cage_angle": 0.1})
         previous = np.zeros((5, 5))
         for frequency in (1e-3, 100.0, 1e3, 4e3, 2e4):
             s = 2j * math.pi * frequency
@@ -284,7 +284,7 @@ def test_without_an_angle_memory_is_that_of_cylindrical_rollers_as_bodies(emap, 
     one = element.evaluate(POSE, np.zeros(6), turning)
     relaxation = element.relaxation(POSE, turning)
     _, stiffness, damping = plain(POSE)
-    ours = line_relaxation(plain, 0.0)
+    ours = line_relaxation(plain, None, {"cage_angle": 0.0})
     for s in 2j * math.pi * np.array([100.0, 1e3, 4e3]):
         found = (stiffness + s * damping + ours.more(np.array([s]))[0])[radial]
         whole = k + s * c + bodies.more(np.array([s]))[0]

@@ -13,8 +13,8 @@ from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.laws import dry_law
 from mbs.bearings.locating import locating_element
+from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
-from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.model.elements import Operation
 
 FORCE = TaperedForce(tapered_estimate("32208"), slices=5)
@@ -50,7 +50,7 @@ def test_no_balance_is_said(monkeypatch) -> None:
 
 
 def test_the_element_takes_offset_and_speeds() -> None:
-    element = TaperedElement("b", "shaft:0", "ground", FORCE, inner_spin=2.0, start_angle=0.1, axial_offset=10e-6)
+    element = LocatingElement("b", "shaft:0", "ground", FORCE, inner_spin=2.0, start_angle=0.1, axial_offset=10e-6)
     operation = Operation(angle=0.4, speed=100.0)
     displacement = np.array([5e-6, 1e-6, 0.0, 0.0, 0.0, 1e-5])
     turn = FORCE.geometry.cage_speed(2.0)

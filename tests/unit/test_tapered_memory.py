@@ -12,9 +12,9 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.rollers.ribbed_geometry import ribbed_estimate
 from ehdmaps.physics.solids import STEEL
 from mbs.bearings.locating.locating_block import FELT
+from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.bearings.tapered.line_film import LOADS, line_films
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
-from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.model.elements import Operation
 from tests.cases.tapered_runs import driven
 from tests.unit.test_tapered_films import CYLINDER, WARM, U
@@ -41,7 +41,7 @@ def films(emap):
 
 
 def element(films, geometry, memory="memory", **keys):
-    return TaperedElement("x", "a", "b", TaperedForce(geometry, **keys), films=lambda *_: films, memory=memory)
+    return LocatingElement("x", "a", "b", TaperedForce(geometry, **keys), films=lambda *_: films, memory=memory)
 
 
 def swept(place, turn, axis, size):

@@ -7,9 +7,9 @@ import pytest
 
 from ehdmaps.physics.rollers.tapered_catalogue import mirrored
 from mbs.bearings.locating.locating_block import FELT
+from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_block import TAPERED, TaperedBlock
-from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.model.blocks import FOUND, IN_PYTHON, Member, Moment
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
@@ -22,9 +22,9 @@ from tests.unit.test_tapered_scenes import GEOMETRY, O_PAIR, model
 PLACE = np.array([12e-6, -6e-6, 3e-6, 0.0, 5e-5, -8e-5])
 RATE = np.array([1e-3, -2e-3, 1e-3, 0.0, 0.1, 0.2])
 ELEMENTS = [
-    TaperedElement("loaded", "a", "b", TaperedForce(GEOMETRY, 3.0, 1e-5), start_angle=0.2, axial_offset=5e-6),
-    TaperedElement("parted", "a", "b", TaperedForce(mirrored(GEOMETRY), 0.0, 1e-5), inner_spin=-0.5, outer_spin=0.2),
-    TaperedElement("other", "a", "b", TaperedForce(GEOMETRY, slices=5, profile="straight"), outer_spin=0.4),
+    LocatingElement("loaded", "a", "b", TaperedForce(GEOMETRY, 3.0, 1e-5), start_angle=0.2, axial_offset=5e-6),
+    LocatingElement("parted", "a", "b", TaperedForce(mirrored(GEOMETRY), 0.0, 1e-5), inner_spin=-0.5, outer_spin=0.2),
+    LocatingElement("other", "a", "b", TaperedForce(GEOMETRY, slices=5, profile="straight"), outer_spin=0.4),
 ]
 
 

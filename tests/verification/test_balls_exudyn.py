@@ -14,8 +14,8 @@ import pytest
 
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from mbs.bearings.balls.ball_bearing import BallForce
-from mbs.bearings.balls.ball_element import MachineBalls
 from mbs.bearings.balls.laws import dry_law
+from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.exports.exudyn import ExudynBallBearing
 from mbs.linearised.modes import undamped_modes
 from mbs.model.body import Inertia, rigid_body
@@ -60,7 +60,8 @@ def system(*loads):
     frames = {name: (x, 0.0, 0.0) for name, x in PLACES.items()}
     rotor = rigid_body("rotor", [Inertia(MASS, POLAR, TRANSVERSE)], freedoms, frames=frames, spin=1.0)
     elements = [
-        MachineBalls(name, f"rotor:{name}", "ground", force(name), axial_offset=WAY[name] * PRELOAD) for name in PLACES
+        LocatingElement(name, f"rotor:{name}", "ground", force(name), axial_offset=WAY[name] * PRELOAD)
+        for name in PLACES
     ]
     across = Load("across", "rotor", np.array([0.0, RADIAL, 0.0, 0.0, 0.0, 0.0]))
     preload = elements[1].force([elements[1].axial_offset, 0.0, 0.0, 0.0, 0.0, 0.0], inner_speed=SPEED)[0][0]

@@ -7,7 +7,6 @@ balls share with rollers with ribs is in `mbs.bearings.locating`.
 `laws`                 contact laws of both raceways: Hertz, with a damper, or a film over it
 `ball_data`            a bearing and its balls as C has them
 `ball_bearing`         the force element; loads and contact angles of the balls
-`ball_element`         a bearing in a machine: films of its speed, the cage that its balls ask for
 `ball_speed`           speed of the cage by contact angles, loads of the balls by that, their work
 `ball_block`           ball bearings in compiled runs
 `ball_memory`          films with memory in time

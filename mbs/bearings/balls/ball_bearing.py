@@ -21,6 +21,7 @@ D. A. Maas, Journal of Tribology 111 (1989) 142. ISO/TS 16281.
 from __future__ import annotations
 
 import ctypes
+import dataclasses
 import functools
 import math
 from collections.abc import Callable
@@ -42,9 +43,10 @@ from mbs.bearings.balls.ball_data import (
     DriveData,
     ShapeData,
 )
+from mbs.bearings.balls.ball_memory import FilmsOfBalls
 from mbs.bearings.balls.ball_speed import Drive, ball_loads, dry_energy, mean_speed, speed_work
 from mbs.bearings.balls.laws import BallLaw
-from mbs.bearings.locating.locating_force import Loads, LocatingForce, directions
+from mbs.bearings.locating.locating_force import Loads, LocatingForce, directions, later
 from mbs.bearings.locating.normal_law import law_data, load_approach
 from mbs.model.findings import CARRIES
 
@@ -124,10 +126,15 @@ class BallForce(LocatingForce):
     """
 
     rolling_element = "ball"
+    of_points, in_time = True, FilmsOfBalls
+    gauge = later("balls.ball_findings", "ball_gauge")
+    felt = later("balls.ball_report", "ball_contacts")
+    relaxation = later("balls.balls_in_balance", "ball_relaxation")
+    condensed = later("balls.balls_in_balance", "balls_in_balance")
     geometry: BallGeometry
 
     def __init__(self, geometry: BallGeometry, law: BallLaw, material: Material = STEEL) -> None:
-        self.geometry, self.law, self.material = geometry, law, material
+        self.geometry, self.law, self.dry_law, self.material = geometry, law, law, material
         distance, angle = geometry.groove_distance, geometry.contact_angle
         self._shape = BallShape(
             axial=distance * math.sin(angle),
@@ -141,6 +148,7 @@ class BallForce(LocatingForce):
         mass, diameter, pitch = geometry.ball_mass(material), geometry.ball_diameter, geometry.pitch_diameter
         self.drive = Drive(0.0, 0.0, math.nan, diameter / pitch, 0.5 * mass * pitch, 0.2 * mass * pitch)
         self.angles, self.film_loads = directions(geometry.balls), law.loads
+        self.same_films = dataclasses.replace(geometry, clearance=0.0, contact_angle=abs(geometry.contact_angle))
         self.directions = np.cos(self.angles), np.sin(self.angles)
         balls = geometry.balls
         self._pose, self._starts, self._balls = np.zeros(6), np.zeros((balls, START)), np.zeros((balls, COLUMNS))
@@ -167,6 +175,10 @@ class BallForce(LocatingForce):
     def with_films(self, films: BallLaw) -> BallForce:
         """See `LocatingForce.with_films`."""
         return BallForce(self.geometry, films, self.material)
+
+    def beyond(self, pose: FloatArray) -> bool:
+        """Tell whether an angular contact bearing is beyond its middle, where it has no raceway."""
+        return bool(self.shape.axial * (self.shape.axial + pose[0]) < 0.0)
 
     @property
     def ratings(self) -> tuple[float, float]:

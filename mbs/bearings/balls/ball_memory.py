@@ -17,15 +17,18 @@ import ctypes
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.kernel.library import function
-from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.laws import BallLaw
 from mbs.bearings.balls.response import SHORTER
 from mbs.bearings.locating.normal_law import HELD, contacts_at
+
+if TYPE_CHECKING:
+    from mbs.bearings.balls.ball_bearing import BallForce
 
 SPRINGS = len(SHORTER)
 """Springs of a contact."""
@@ -66,7 +69,7 @@ class FilmsOfBalls:
 
     @classmethod
     def at_rest(cls, force: BallForce) -> FilmsOfBalls:
-        """See `FilmsInTime.at_rest` of `mbs.bearings.locating.locating_element`."""
+        """See `FilmsInTime.at_rest` of `mbs.bearings.locating.locating_force`."""
         approaches = force.last_balls[:, 14:16].copy()
         return cls(np.zeros((*approaches.shape, SPRINGS)), _springs(force.law, approaches), approaches)
 

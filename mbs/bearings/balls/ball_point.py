@@ -15,10 +15,9 @@ import numpy as np
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.physics.point.film_formulas import film_of, hamrock_dowson_central, hamrock_dowson_minimum
 from mbs.bearings.balls.ball_bearing import BallForce, BallLoads
-from mbs.bearings.balls.ball_element import MachineBalls
 from mbs.bearings.balls.ball_findings import ball_pressures
 from mbs.bearings.balls.ball_motion import Motion, ball_motion
-from mbs.bearings.locating.locating_element import Settled
+from mbs.bearings.locating.locating_force import Settled
 from mbs.bearings.locating.locating_point import Course, LocatingPoint
 
 
@@ -37,7 +36,6 @@ class BallPoint(LocatingPoint):
         that carry more than 1 % of the highest load; NaN where films come from formulas, or there are none.
     """
 
-    element = MachineBalls
     force: BallForce
     elements: BallLoads
     motion: Motion

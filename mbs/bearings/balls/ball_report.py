@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -92,7 +92,7 @@ def drilling_power(ellipse: Ellipse, load: FloatArray, spin: FloatArray) -> Floa
 
 
 def ball_contacts(
-    force: BallForce, balls: BallLoads, films: PointFilmSource | None, speeds: tuple[float, float]
+    force: BallForce, balls: BallLoads, films: Any, speeds: tuple[float, float]
 ) -> tuple[BearingContacts, RollingLoss]:
     """Pressures and films of all balls, and the loss of rolling.
 
@@ -102,21 +102,21 @@ def ball_contacts(
         Geometry and laws.
     balls : BallLoads
         Loads at rest.
-    films : PointFilmSource or None
-        What knows the films; None for dry contacts.
+    films : callable or None
+        Films over the speed, of which `points`, a `PointFilmSource`, knows those of contacts; None for dry contacts.
     speeds : (float, float)
         Speeds of the inner and the outer ring [rad/s].
     """
-    u = abs(force.geometry.entrainment_speed(*speeds))
+    u, points = abs(force.geometry.entrainment_speed(*speeds)), getattr(films, "points", None)
     sides = []
     for side, ellipse in enumerate(force.geometry.contacts(force.material)):
         load = balls.load[side][:, None]
         pressure, loaded = np.asarray(ellipse.max_pressure(load)), load > 0.0
         central, smallest, rolling = np.full((3, *load.shape), np.nan)
-        if films is not None and u > 0.0:
-            central[loaded], smallest[loaded] = films.films(side, load[loaded], u)
+        if points is not None and u > 0.0:
+            central[loaded], smallest[loaded] = points.films(side, load[loaded], u)
             rolling[~loaded] = 0.0
-            rolling[loaded] = strips(ellipse, load[loaded], partial(films.line_force, side, entrainment_speed=u))
+            rolling[loaded] = strips(ellipse, load[loaded], partial(points.line_force, side, entrainment_speed=u))
         sides.append(ContactState(pressure, pressure, central, smallest, rolling, np.zeros(load.shape)))
     power = np.stack([side.rolling_force[:, 0] for side in sides]) * u
     spins = zip(

@@ -66,9 +66,7 @@ def ball_relaxation(force: BallForce, balls: BallLoads, conditions: dict[str, An
     return Relaxation(rows.reshape(-1, 6), times.reshape(-1))
 
 
-def balls_in_balance(
-    force: BallForce, balls: BallLoads, conditions: dict[str, Any], *, relaxes: bool
-) -> Condensed | None:
+def balls_in_balance(force: BallForce, balls: BallLoads, conditions: dict[str, Any], relaxes: bool) -> Condensed | None:
     """Condense the balls of a bearing; None without films, or without a load.
 
     Parameters

@@ -4,8 +4,8 @@
 |---|---|
 | `normal_law` | load, stiffness and damping of a contact over its approach, as the kernel reads them |
 | `film_tables` | these laws over the speed, for compiled runs |
-| `locating_force` | force, stiffness and damping by the pose of the inner ring |
-| `locating_element` | the bearing in a machine, at the speed that the system has |
+| `locating_force` | force, stiffness and damping by the pose of the inner ring; what a kind has of its own |
+| `locating_element` | the bearing of any kind in a machine, at the speed that the system has |
 | `locating_point` | one bearing alone at an operating point |
 | `locating_block` | such bearings in compiled runs |
 

@@ -1,8 +1,7 @@
 """A bearing that carries axial load in a machine: quasi-static, with the films of the speed that the system has.
 
 The angle of the cage goes evenly, by pure rolling at the nominal contact angle. Films have the stiffness and damping of
-slow motion, or a memory. What its kinds have of their own, `MachineBalls` and `TaperedElement`, are the functions below
-its films: which they are at a speed, how they keep a memory, how small motions and contacts are told.
+slow motion, or a memory. What a kind has of its own is in its force, `LocatingForce`.
 """
 
 from __future__ import annotations
@@ -13,13 +12,14 @@ from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, EhdmapsError
 from ehdmaps.units import RPM
+from mbs.bearings.locating.locating_force import Settled
 from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers, check_apart
 from mbs.model.findings import Cause, Finding, Gauge
 from mbs.model.relaxation import Films, Relaxation
@@ -35,32 +35,6 @@ MOST_SPEEDS = 64
 """Speeds whose films are kept."""
 
 
-class Settled(NamedTuple):
-    """A bearing at a pose.
-
-    Attributes
-    ----------
-    force : LocatingForce
-        The force with the films of the speed, after a call at the pose.
-    pose : array, shape (6,)
-        Pose of the inner ring in the outer one [m, rad].
-    conditions : dict
-        Angle of the cage [rad] and speeds [rad/s], by the names that the force takes.
-    loads : BallLoads or TaperedLoads
-        State of its rolling elements.
-    """
-
-    force: Any
-    pose: FloatArray
-    conditions: dict[str, float]
-    loads: Any
-
-    @property
-    def speeds(self) -> tuple[float, float]:
-        """Speeds of the inner and the outer ring [rad/s]."""
-        return self.conditions["inner_speed"], self.conditions["outer_speed"]
-
-
 class LocatingStates(NamedTuple):
     """States of a bearing after a step in time.
 
@@ -74,7 +48,7 @@ class LocatingStates(NamedTuple):
         What contacts take up, and what cage and speed bring in [W].
     stored : float
         Energy of the contacts, which are dry [J].
-    films : FilmsOfBalls or FilmsOfRollers or None
+    films : FilmsInTime or None
         Films with memory; None where none are known.
     """
 
@@ -86,40 +60,9 @@ class LocatingStates(NamedTuple):
     films: Any = None
 
 
-class FilmsInTime(Protocol):
-    """Films with memory of a bearing after a step."""
-
-    @classmethod
-    def at_rest(cls, force: Any) -> Self:
-        """Films that have not moved, at the last call of a force.
-
-        Parameters
-        ----------
-        force : LocatingForce
-            The force.
-        """
-        ...
-
-    def held(self, step: float) -> FloatArray:
-        """Numbers that contacts hold over a step [s], as `LocatingForce.held` takes them."""
-        ...
-
-    def after(self, step: float, force: Any) -> Self:
-        """Films after a step.
-
-        Parameters
-        ----------
-        step : float
-            Length of the step [s].
-        force : LocatingForce
-            The force with the films of its end, at its last call.
-        """
-        ...
-
-
 @dataclass(frozen=True, eq=False)
 class LocatingElement(OnRings):
-    """A bearing that carries axial load, between an inner and an outer ring; kinds inherit from it.
+    """A bearing that carries axial load, between an inner and an outer ring, of any kind.
 
     Attributes
     ----------
@@ -141,15 +84,9 @@ class LocatingElement(OnRings):
         share them.
     memory : {"slow", "memory"}
         Whether films have stiffness and damping of slow motion, or relax; "memory" in time, too.
-    of_points : bool
-        Whether contacts are points, else lines in slices.
-    in_time : type
-        Class of its films with memory.
     """
 
     locating: ClassVar[bool] = True
-    of_points: ClassVar[bool] = False
-    in_time: ClassVar[type[FilmsInTime]]
     name: str
     inner: str
     outer: str
@@ -163,69 +100,14 @@ class LocatingElement(OnRings):
     _made: OrderedDict[float, Any] = field(default_factory=OrderedDict, init=False, repr=False)
 
     @property
-    def dry_law(self) -> Any:
-        """The law where nothing rolls."""
-        raise NotImplementedError
-
-    @property
-    def same_films(self) -> object:
-        """Key of its contacts, whatever its clearance, and which way it stands."""
-        raise NotImplementedError
-
-    def relaxation_at(self, at: Settled) -> Relaxation:
-        """Relaxation of its films.
-
-        Parameters
-        ----------
-        at : Settled
-            The bearing at rest.
-        """
-        raise NotImplementedError
-
-    def condensed_at(self, at: Settled) -> Condensed | None:
-        """Its rolling elements for small motions, of a bearing with films; None where they have none, or no load.
-
-        Parameters
-        ----------
-        at : Settled
-            The bearing at rest.
-        """
-        raise NotImplementedError
-
-    def gauge_at(self, at: Settled) -> Gauge:
-        """See `OnRings.gauge`.
-
-        Parameters
-        ----------
-        at : Settled
-            The bearing at rest.
-        """
-        raise NotImplementedError
-
-    def felt_at(self, at: Settled) -> tuple[BearingContacts, RollingLoss]:
-        """See `OnRings.felt`.
-
-        Parameters
-        ----------
-        at : Settled
-            The bearing at rest.
-        """
-        raise NotImplementedError
-
-    def beyond(self, pose: FloatArray) -> bool:
-        """Tell whether the inner ring is where it has no raceway, however near.
-
-        Parameters
-        ----------
-        pose : array (6,)
-            Pose of the inner ring in the outer one.
-        """
-        return False
+    def rolling_element(self) -> str:
+        """See `OnRings.rolling_element`."""
+        return str(self.force.rolling_element)
 
     @property
     def film_key(self) -> tuple[object, ...]:
         """Key that bearings with the same law at all speeds have in common."""
-        law = id(self.dry_law) if self.films is None else self.films
+        law = id(self.force.dry_law) if self.films is None else self.films
         return (law, self.inner_spin, self.outer_spin, self.relaxes)
 
     @property
@@ -247,7 +129,7 @@ class LocatingElement(OnRings):
             Where there are no films at that speed.
         """
         if self.films is None or abs(speed) * abs(self.inner_spin - self.outer_spin) == 0.0:
-            return self.dry_law
+            return self.force.dry_law
         try:
             return self.films(self.inner_spin * abs(speed), self.outer_spin * abs(speed))
         except EhdmapsError as error:
@@ -332,7 +214,11 @@ class LocatingElement(OnRings):
 
     def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
         """See `OnRings.film_relaxation`; where nothing rolls, contacts have springs without stiffness."""
-        return None if self.films is None else self.relaxation_at(self.settled(displacement, operation))
+        if self.films is None:
+            return None
+        at = self.settled(displacement, operation)
+        found: Relaxation = at.force.relaxation(at.loads, at.conditions)
+        return found
 
     @property
     def slowest_film(self) -> float:
@@ -351,11 +237,16 @@ class LocatingElement(OnRings):
 
     def small_motions(self, displacement: FloatArray, operation: Operation) -> Condensed | None:
         """See `OnRings.small_motions`."""
-        return self.condensed_at(self.settled(displacement, operation)) if self.varies else None
+        if not self.varies:
+            return None
+        at = self.settled(displacement, operation)
+        found: Condensed | None = at.force.condensed(at.loads, at.conditions, self.relaxes)
+        return found
 
     def gauge(self, displacement: FloatArray, operation: Operation) -> Gauge:
         """See `OnRings.gauge`; with what is to be known of the films."""
-        found = self.gauge_at(self.settled(displacement, operation))
+        at = self.settled(displacement, operation)
+        found: Gauge = at.force.gauge(at.loads)
         speed = abs(operation.speed)
         note = getattr(self.films, "note", None)  # films of one's own may have none
         words = note(self.inner_spin * speed, self.outer_spin * speed) if note is not None else ""
@@ -363,7 +254,9 @@ class LocatingElement(OnRings):
 
     def felt(self, displacement: FloatArray, operation: Operation) -> tuple[BearingContacts, RollingLoss]:
         """See `OnRings.felt`."""
-        return self.felt_at(self.settled(displacement, operation))
+        at = self.settled(displacement, operation)
+        found: tuple[BearingContacts, RollingLoss] = at.force.felt(at.loads, self.films, at.speeds)
+        return found
 
     def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Force on the inner ring, stiffness and damping; whether loads are beyond those of the films.
@@ -398,7 +291,7 @@ class LocatingElement(OnRings):
         """
         force, pose, conditions = self.force_at(operation), self.pose(displacement), self.conditions(operation)
         most = force.shape.most_travel, force.shape.most_tilt
-        check_apart(self.name, pose, most, operation.time, beyond=self.beyond(pose))
+        check_apart(self.name, pose, most, operation.time, beyond=force.beyond(pose))
         films, step = None if states is None else states.films, 0.0 if states is None else operation.time - states.time
         force.held = None if films is None else films.held(step)
         try:
@@ -408,7 +301,7 @@ class LocatingElement(OnRings):
         last = np.zeros((force.angles.size, 4)) if states is None else states.last.copy()
         work = force.work((conditions["inner_speed"], conditions["outer_speed"]), last)
         if self.relaxes:
-            films = self.in_time.at_rest(force) if films is None else films.after(step, force)
+            films = force.in_time.at_rest(force) if films is None else films.after(step, force)
         slowed = answer.damping @ velocity
         turning = turned_by(pose, answer.force + slowed) * self.cage_turn * operation.speed
         return answer, LocatingStates(

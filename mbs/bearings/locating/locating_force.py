@@ -9,8 +9,10 @@ moment. A kind is balls, or rollers with ribs; its balance is in C.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -68,8 +70,80 @@ class Loads:
         raise NotImplementedError
 
 
+class Settled(NamedTuple):
+    """A bearing at a pose.
+
+    Attributes
+    ----------
+    force : LocatingForce
+        The force with the films of the speed, after a call at the pose.
+    pose : array, shape (6,)
+        Pose of the inner ring in the outer one [m, rad].
+    conditions : dict
+        Angle of the cage [rad] and speeds [rad/s], by the names that the force takes.
+    loads : Loads
+        State of its rolling elements.
+    """
+
+    force: Any
+    pose: FloatArray
+    conditions: dict[str, float]
+    loads: Any
+
+    @property
+    def speeds(self) -> tuple[float, float]:
+        """Speeds of the inner and the outer ring [rad/s]."""
+        return self.conditions["inner_speed"], self.conditions["outer_speed"]
+
+
+class FilmsInTime(Protocol):
+    """Films with memory of a bearing after a step."""
+
+    @classmethod
+    def at_rest(cls, force: Any) -> Self:
+        """Films that have not moved, at the last call of a force.
+
+        Parameters
+        ----------
+        force : LocatingForce
+            The force.
+        """
+        ...
+
+    def held(self, step: float) -> FloatArray:
+        """Numbers that contacts hold over a step [s], as `LocatingForce.held` takes them."""
+        ...
+
+    def after(self, step: float, force: Any) -> Self:
+        """Films after a step.
+
+        Parameters
+        ----------
+        step : float
+            Length of the step [s].
+        force : LocatingForce
+            The force with the films of its end, at its last call.
+        """
+        ...
+
+
+def later(module: str, name: str) -> Callable[..., Any]:
+    """Make a method of a kind, whose module of `mbs.bearings` is loaded when it is called: runs do not need it.
+
+    Parameters
+    ----------
+    module, name : str
+        Where the function is, and how it is called; it takes the force first.
+    """
+
+    def called(self: LocatingForce, *given: Any) -> Any:
+        return getattr(import_module(f"mbs.bearings.{module}"), name)(self, *given)
+
+    return called
+
+
 class LocatingForce:
-    """Force, stiffness and damping of a bearing that carries axial load; kinds inherit from it.
+    """Force, stiffness and damping of a bearing that carries axial load; kinds inherit from it, and are rows by that.
 
     Attributes
     ----------
@@ -88,6 +162,24 @@ class LocatingForce:
         dry.
     held : array (Z, ...) or None
         What films with memory hold over a step; None without a memory.
+    dry_law : LocatingForce.with_films takes it
+        Law where nothing rolls.
+    same_films : object
+        Key of its contacts, whatever its clearance, and which way it stands.
+    of_points : bool
+        Whether contacts are points, else lines in slices.
+    in_time : type of FilmsInTime
+        Class of its films with memory.
+    gauge : callable
+        Loads at rest to what its contacts feel, `mbs.model.findings.Gauge`.
+    felt : callable
+        Loads at rest, films over the speed or None, and speeds of the rings [rad/s] to pressures and films of contacts,
+        and the loss of rolling, see `OnRings.felt`.
+    relaxation : callable
+        Loads at rest and their conditions to the `Relaxation` of its films.
+    condensed : callable
+        The same, and whether films have a memory, to its rolling elements for small motions, `Condensed`; None without
+        films, or without a load.
 
     Notes
     -----
@@ -95,6 +187,14 @@ class LocatingForce:
     """
 
     rolling_element: ClassVar[str]
+    of_points: ClassVar[bool] = False
+    in_time: ClassVar[type[FilmsInTime]]
+    gauge: ClassVar[Callable[..., Any]]
+    felt: ClassVar[Callable[..., Any]]
+    relaxation: ClassVar[Callable[..., Any]]
+    condensed: ClassVar[Callable[..., Any]]
+    dry_law: Any
+    same_films: Any
     geometry: Any
     material: Material
     shape: Any
@@ -217,6 +317,16 @@ class LocatingForce:
             Material of the elements.
         """
         raise NotImplementedError
+
+    def beyond(self, pose: FloatArray) -> bool:
+        """Tell whether the inner ring is where it has no raceway, however near.
+
+        Parameters
+        ----------
+        pose : array (6,)
+            Pose of the inner ring in the outer one.
+        """
+        return False
 
     def forget(self) -> None:
         """Drop the places of the elements after the last call, so that the next one is as the first."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
@@ -17,7 +17,8 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import written
-from mbs.bearings.locating.locating_element import LocatingElement, Settled
+from mbs.bearings.locating.locating_element import LocatingElement
+from mbs.bearings.locating.locating_force import Settled
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
 from mbs.model.equilibrium import equilibrium
@@ -62,7 +63,6 @@ class LocatingPoint(RingPoint):
         without load, or without an oil.
     """
 
-    element: ClassVar[type[LocatingElement]]
     force: Any
     pressure: FloatArray
     central_film: FloatArray
@@ -108,7 +108,7 @@ class LocatingPoint(RingPoint):
             Where no equilibrium is found.
         """
         given, speeds = ring_load(load), (inner_speed, outer_speed)
-        element = cls.element("bearing", RING, "ground", force, *speeds)
+        element = LocatingElement("bearing", RING, "ground", force, *speeds)
         free = ["x", "y", "z", "theta_y", "theta_z"] if tilts else ["x", "y", "z"]
         ring = rigid_body(RING, [Inertia(1.0, 1.0, 1.0)], free)
         system = System([ring], loads=[Load("load", RING, np.array([*given, 0.0, 0.0, 0.0]))], elements=[element])
@@ -132,7 +132,7 @@ class LocatingPoint(RingPoint):
             pose=pose,
             stiffness=balance.element_stiffness[0],
             damping=balance.element_damping[0],
-            findings=(*element.gauge_at(at).findings, *filter(None, [force.reach_of(at.loads.load[:2])])),
+            findings=(*force.gauge(at.loads).findings, *filter(None, [force.reach_of(at.loads.load[:2])])),
             **cls.own(at, Course(speeds, oil, temperature, films)),
         )
 

@@ -8,16 +8,18 @@ direction of rolling, at one traction.
 from __future__ import annotations
 
 import dataclasses
+from typing import Any
 
 import numpy as np
 
 from mbs.bearings.contact_report import TRACTION, BearingContacts, RollingLoss, loss_of
-from mbs.bearings.films import FilmSource
+from mbs.bearings.films import DryContacts
+from mbs.bearings.tapered.line_film import cylinder_of
 from mbs.bearings.tapered.tapered_bearing import TaperedForce, TaperedLoads
 
 
 def roller_contacts(
-    force: TaperedForce, rollers: TaperedLoads, films: FilmSource, speeds: tuple[float, float], temperature: float
+    force: TaperedForce, rollers: TaperedLoads, films: Any, speeds: tuple[float, float]
 ) -> tuple[BearingContacts, RollingLoss]:
     """Pressures and films of all slices, and the loss of rolling.
 
@@ -25,17 +27,18 @@ def roller_contacts(
     ----------
     force, rollers : TaperedForce, TaperedLoads
         The bearing, and its loads at rest.
-    films : FilmSource
-        What knows the films of lines of the middle of a roller.
+    films : callable or None
+        Films over the speed, of which `lines`, a `FilmSource`, knows those of lines of the middle of a roller at their
+        `temperature`; None for dry lines.
     speeds : (float, float)
         Speeds of the inner and the outer ring [rad/s].
-    temperature : float
-        Temperature of the raceways [K].
     """
     geometry, u = force.geometry, abs(force.geometry.entrainment_speed(*speeds))
+    dry = DryContacts(cylinder_of(geometry).contacts(force.material, "iso16281"))
+    source, temperature = getattr(films, "lines", dry), float(getattr(films, "temperature", 0.0))
     sides = []
     for side, contact in enumerate(geometry.contacts(force.material)):
-        state = films.state(side, rollers.slices[side], u, temperature)
+        state = source.state(side, rollers.slices[side], u, temperature)
         radii = np.array([geometry.radius_at(place, side) for place in force.positions.tolist()])
         pressure = np.sqrt(rollers.slices[side] * contact.reduced_modulus / (2.0 * np.pi * radii))
         higher = np.where(state.hertz_pressure > 0.0, pressure / np.maximum(state.hertz_pressure, 1e-300), 1.0)

@@ -9,7 +9,7 @@ locked film, k_s = k + c/theta, as in `mbs.linearised.bands`.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from mbs.bearings.locating.normal_law import STEP, contact_slopes, contacts_at
 from mbs.bearings.slices_in_balance import natural_times, relaxation_times
 from mbs.bearings.tapered.kernel_structs import FIRST_RIB
-from mbs.bearings.tapered.tapered_bearing import TaperedForce
+from mbs.bearings.tapered.tapered_bearing import TaperedForce, TaperedLoads
 from mbs.model.condensed import Condensed
 from mbs.model.contacts import Contacts, LawSlopes, Slopes, followed, law_slopes, relaxation
 from mbs.model.relaxation import Relaxation
@@ -34,26 +34,28 @@ class _Lines(NamedTuple):
     approaches: FloatArray
 
 
-def line_relaxation(force: TaperedForce, cage_angle: float) -> Relaxation:
+def line_relaxation(force: TaperedForce, _: TaperedLoads, conditions: dict[str, Any]) -> Relaxation:
     """Relaxation in the pose (6,) of the inner ring; as many springs at any speed, dry lines have none of stiffness.
 
     Parameters
     ----------
     force : TaperedForce
         The force, at the pose of its last call.
-    cage_angle : float
-        Angle of the first roller at that call [rad].
+    conditions : dict
+        Angle of the cage at that call, and speeds.
     """
-    lines = _lines(force, cage_angle, np.ones(force.angles.size, dtype=np.bool_))
+    lines = _lines(force, conditions["cage_angle"], np.ones(force.angles.size, dtype=np.bool_))
     return relaxation(lines.contacts, lines.pose, 2 * force.shape.levers.size)
 
 
-def rollers_in_balance(force: TaperedForce, cage_angle: float, *, relaxes: bool) -> Condensed | None:
+def rollers_in_balance(
+    force: TaperedForce, _: TaperedLoads, conditions: dict[str, Any], relaxes: bool
+) -> Condensed | None:
     """Condense the rollers of a bearing; None without films, or without a load.
 
     Parameters
     ----------
-    force, cage_angle
+    force, conditions
         The same as of `line_relaxation`.
     relaxes : bool
         Whether films have a memory.
@@ -62,7 +64,7 @@ def rollers_in_balance(force: TaperedForce, cage_angle: float, *, relaxes: bool)
     on = rows[:, 3] + rows[:, 5] > 0.0
     if force.films.dry or not np.any(on):
         return None
-    lines = _lines(force, cage_angle, on)
+    lines = _lines(force, conditions["cage_angle"], on)
     found = [natural_times(point, lines.approaches[:, side]) for side, point in enumerate(force.films.points)]
     natural, slices = np.zeros_like(lines.contacts.stiffness), 2 * lines.approaches.shape[2]
     natural[:, :slices] = np.concatenate(found, axis=1)

@@ -43,7 +43,7 @@ from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.surface import iso_profile
 from mbs.bearings.laws import roller_coefficient
-from mbs.bearings.locating.locating_force import Loads, LocatingForce, directions
+from mbs.bearings.locating.locating_force import Loads, LocatingForce, directions, later
 from mbs.bearings.locating.normal_law import contacts_at
 from mbs.bearings.tapered.kernel_structs import (
     ANSWER,
@@ -60,7 +60,8 @@ from mbs.bearings.tapered.kernel_structs import (
     data_of,
     functions,
 )
-from mbs.bearings.tapered.line_film import DRY_LINES, LineFilms
+from mbs.bearings.tapered.line_film import DRY_LINES, LineFilms, cylinder_of
+from mbs.bearings.tapered.tapered_memory import FilmsOfRollers
 
 if TYPE_CHECKING:
     from mbs.life import ReferenceLife
@@ -144,6 +145,11 @@ class TaperedForce(LocatingForce):
     """
 
     rolling_element = "roller"
+    in_time, dry_law = FilmsOfRollers, DRY_LINES
+    gauge = later("tapered.roller_findings", "roller_gauge")
+    felt = later("tapered.roller_report", "roller_contacts")
+    relaxation = later("tapered.rollers_in_balance", "line_relaxation")
+    condensed = later("tapered.rollers_in_balance", "rollers_in_balance")
     geometry: TaperedGeometry
 
     def __init__(
@@ -170,7 +176,7 @@ class TaperedForce(LocatingForce):
             )
         if problems:
             raise InputError(problems)
-        self.geometry, self.material = geometry, material
+        self.geometry, self.same_films, self.material = geometry, cylinder_of(geometry), material
         self.damping, self.damping_time, self.profile = float(damping), float(damping_time), profile
         length, diameter, half = geometry.roller_length, geometry.roller_diameter, geometry.half_cone_angle
         self.positions = ((np.arange(slices) + 0.5) / slices - 0.5) * length

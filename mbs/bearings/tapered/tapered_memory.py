@@ -49,7 +49,7 @@ class FilmsOfRollers:
 
     @classmethod
     def at_rest(cls, force: TaperedForce) -> FilmsOfRollers:
-        """See `FilmsInTime.at_rest` of `mbs.bearings.locating.locating_element`."""
+        """See `FilmsInTime.at_rest` of `mbs.bearings.locating.locating_force`."""
         return cls(no_memory(force.angles.size, force.positions.size))._gone_on(force)
 
     def held(self, step: float) -> FloatArray:

@@ -18,11 +18,10 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.point.film_formulas import film_of, hamrock_dowson_central
 from ehdmaps.units import written
 from mbs.bearings.films import FormulaFilms
-from mbs.bearings.locating.locating_element import Settled
+from mbs.bearings.locating.locating_force import Settled
 from mbs.bearings.locating.locating_point import Course, LocatingPoint
 from mbs.bearings.tapered.roller_findings import line_pressures
 from mbs.bearings.tapered.tapered_bearing import TaperedForce, TaperedLoads
-from mbs.bearings.tapered.tapered_element import TaperedElement
 
 RIB_FRICTION = 0.05
 """Coefficient of friction at ribs, assumed: mixed friction with an oil film."""
@@ -42,7 +41,6 @@ class TaperedPoint(LocatingPoint):
         Power that all ribs take with the friction `RIB_FRICTION` [W].
     """
 
-    element = TaperedElement
     force: TaperedForce
     elements: TaperedLoads
     rib_pressure: FloatArray

@@ -11,7 +11,7 @@ from ehdmaps.units import PRESSURE, RPM, SPEED, TEMPERATURE, Display
 from mbs.bearings.balls.ball_findings import ball_pressures
 from mbs.bearings.balls.ball_motion import ball_motion
 from mbs.bearings.balls.ball_point import BallPoint
-from mbs.bearings.locating.locating_element import Settled
+from mbs.bearings.locating.locating_force import Settled
 from mbs.output.one_bearing.kind import (
     CONTACT_SIDES,
     Column,

@@ -6,9 +6,10 @@ import math
 from collections.abc import Callable
 from typing import cast
 
-from mbs.bearings.balls.ball_element import MachineBalls
-from mbs.bearings.locating.locating_element import LocatingElement, Settled
-from mbs.bearings.tapered.tapered_element import TaperedElement
+from mbs.bearings.balls.ball_bearing import BallForce
+from mbs.bearings.locating.locating_element import LocatingElement
+from mbs.bearings.locating.locating_force import LocatingForce, Settled
+from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.model.equilibrium import Equilibrium
 from mbs.output.one_bearing.balls import ball_words
 from mbs.output.one_bearing.ribs import roller_words
@@ -16,11 +17,11 @@ from mbs.output.one_bearing.table import matrix_line
 from mbs.output.state_text import life_lines
 from mbs.scene.assembly import Model
 
-_WORDS: dict[type[LocatingElement], Callable[[Settled], tuple[str, list[str]]]] = {
-    MachineBalls: ball_words,
-    TaperedElement: roller_words,
+_WORDS: dict[type[LocatingForce], Callable[[Settled], tuple[str, list[str]]]] = {
+    BallForce: ball_words,
+    TaperedForce: roller_words,
 }
-"""By class: what is said behind the force on the inner ring, and in further lines."""
+"""By class of the force: what is said behind the force on the inner ring, and in further lines."""
 
 
 def located_lines(model: Model, balance: Equilibrium) -> list[str]:
@@ -35,7 +36,7 @@ def located_lines(model: Model, balance: Equilibrium) -> list[str]:
     """
     lines = []
     for place, element, at in located(model, balance):
-        force, (words, more) = balance.forces[place], _WORDS[type(element)](at)
+        force, (words, more) = balance.forces[place], _WORDS[type(at.force)](at)
         lines += [
             f"{element.name}: {force[0]:.5g} N along x, {math.hypot(force[1], force[2]):.5g} N across it on the inner "
             f"ring; {words}",

@@ -6,7 +6,7 @@ from ehdmaps.physics.hertz import LINE_LIMIT
 from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.units import PRESSURE, RPM, TEMPERATURE
-from mbs.bearings.locating.locating_element import Settled
+from mbs.bearings.locating.locating_force import Settled
 from mbs.bearings.tapered.roller_findings import line_pressures
 from mbs.bearings.tapered.tapered_point import RIB_FRICTION, TaperedPoint
 from mbs.output.one_bearing.kind import (

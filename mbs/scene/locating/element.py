@@ -9,11 +9,9 @@ from typing import TYPE_CHECKING, Any
 from ehdmaps.errors import InputError
 from ehdmaps.units import TEMPERATURE
 from mbs.bearings.balls.ball_bearing import BallForce
-from mbs.bearings.balls.ball_element import MachineBalls
 from mbs.bearings.balls.laws import dry_law
 from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
-from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.model.relaxation import FILM_WORDS
 from mbs.scene.contact_laws import HERTZ_FORMS, ContactLaws, Damper, hertz_damper, surface_label
 from mbs.scene.locating.ball_films import films_of_balls
@@ -45,7 +43,6 @@ class _Kind:
         (spec, surroundings) -> law with the films of two speeds of the rings.
     """
 
-    element: type[LocatingElement]
     allowed: str
     words: Callable[[Any], str]
     sources: Callable[[ContactLaws], tuple[str, str]]
@@ -103,7 +100,6 @@ def _dry_rollers(spec: TaperedSpec, damper: Damper) -> TaperedForce:
 
 _KINDS: dict[type[LocatingSpec], _Kind] = {
     BallSpec: _Kind(
-        element=MachineBalls,
         allowed="table (films from the film table of points)",
         words=lambda spec: "ball bearing",
         sources=_sources_of_points,
@@ -111,7 +107,6 @@ _KINDS: dict[type[LocatingSpec], _Kind] = {
         films=films_of_balls,
     ),
     TaperedSpec: _Kind(
-        element=TaperedElement,
         allowed="table, formula",
         words=lambda spec: str(spec.geometry.kind).replace("bearing", "roller bearing"),
         sources=_sources_of_lines,
@@ -189,7 +184,7 @@ def build_located(spec: LocatingSpec, surroundings: Surroundings) -> Built:
     laws, spin, kind = surroundings.laws, surroundings.places.spin, _KINDS[type(spec)]
     has_films = laws.films_of(spec)
     damper = (None if has_films else hertz_damper(laws.chosen)) or Damper()
-    element = kind.element(
+    element = LocatingElement(
         name=spec.name,
         inner=spec.inner,
         outer=spec.outer,
