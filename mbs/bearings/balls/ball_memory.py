@@ -17,7 +17,7 @@ import ctypes
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
@@ -26,9 +26,6 @@ from ehdmaps.kernel.library import function
 from mbs.bearings.balls.laws import BallLaw
 from mbs.bearings.balls.response import SHORTER
 from mbs.bearings.locating.normal_law import HELD, contacts_at
-
-if TYPE_CHECKING:
-    from mbs.bearings.balls.ball_bearing import BallForce
 
 SPRINGS = len(SHORTER)
 """Springs of a contact."""
@@ -68,7 +65,7 @@ class FilmsOfBalls:
     approaches: FloatArray
 
     @classmethod
-    def at_rest(cls, force: BallForce) -> FilmsOfBalls:
+    def at_rest(cls, force: Any) -> FilmsOfBalls:
         """See `FilmsInTime.at_rest` of `mbs.bearings.locating.locating_force`."""
         approaches = force.last_balls[:, 14:16].copy()
         return cls(np.zeros((*approaches.shape, SPRINGS)), _springs(force.law, approaches), approaches)
@@ -85,7 +82,7 @@ class FilmsOfBalls:
         _hold()(self.approaches.size, _SHORTER.ctypes.data, step, *(one.ctypes.data for one in arrays))
         return passed, held
 
-    def after(self, step: float, force: BallForce) -> FilmsOfBalls:
+    def after(self, step: float, force: Any) -> FilmsOfBalls:
         """See `FilmsInTime.after`."""
         approaches = force.last_balls[:, 14:16].copy()
         forces, springs, after = self.forces.copy(), self.springs.copy(), _springs(force.law, approaches)

@@ -13,15 +13,12 @@ stays, and theta follows c.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from mbs.bearings.tapered.kernel_structs import MEMORY, LineSprings, functions
-
-if TYPE_CHECKING:
-    from mbs.bearings.tapered.tapered_bearing import TaperedForce
 
 LEFT, FORCE, STIFFNESS, TIME = range(3, MEMORY)
 """Some rows of the memory of the slices of a line: the part of f that is left after a step; f [N], K [N/m] and theta
@@ -48,7 +45,7 @@ class FilmsOfRollers:
     memory: FloatArray
 
     @classmethod
-    def at_rest(cls, force: TaperedForce) -> FilmsOfRollers:
+    def at_rest(cls, force: Any) -> FilmsOfRollers:
         """See `FilmsInTime.at_rest` of `mbs.bearings.locating.locating_force`."""
         return cls(no_memory(force.angles.size, force.positions.size))._gone_on(force)
 
@@ -59,11 +56,11 @@ class FilmsOfRollers:
         functions().hold(count, slices, step, memory.ctypes.data)
         return memory
 
-    def after(self, step: float, force: TaperedForce) -> FilmsOfRollers:
+    def after(self, step: float, force: Any) -> FilmsOfRollers:
         """See `FilmsInTime.after`."""
         return FilmsOfRollers(self.held(step))._gone_on(force)
 
-    def _gone_on(self, force: TaperedForce) -> FilmsOfRollers:
+    def _gone_on(self, force: Any) -> FilmsOfRollers:
         """Bring the memory, which is its own, to the end of a step."""
         cone, cup = force.films.springs
         springs = LineSprings(cone=cone, cup=cup, cone_other=cone, cup_other=cup)
