@@ -133,7 +133,7 @@ def later(module: str, name: str) -> Callable[..., Any]:
     Parameters
     ----------
     module, name : str
-        Where the function is, and how it is called; it takes the force first.
+        Module and name of the function, which takes the force first.
     """
 
     def called(self: LocatingForce, *given: Any) -> Any:

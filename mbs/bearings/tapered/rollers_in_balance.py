@@ -34,13 +34,15 @@ class _Lines(NamedTuple):
     approaches: FloatArray
 
 
-def line_relaxation(force: TaperedForce, _: TaperedLoads, conditions: dict[str, Any]) -> Relaxation:
+def line_relaxation(force: TaperedForce, rollers: TaperedLoads, conditions: dict[str, Any]) -> Relaxation:
     """Relaxation in the pose (6,) of the inner ring; as many springs at any speed, dry lines have none of stiffness.
 
     Parameters
     ----------
     force : TaperedForce
         The force, at the pose of its last call.
+    rollers : TaperedLoads
+        What that call found; of no effect.
     conditions : dict
         Angle of the cage at that call, and speeds.
     """
@@ -49,13 +51,13 @@ def line_relaxation(force: TaperedForce, _: TaperedLoads, conditions: dict[str, 
 
 
 def rollers_in_balance(
-    force: TaperedForce, _: TaperedLoads, conditions: dict[str, Any], relaxes: bool
+    force: TaperedForce, rollers: TaperedLoads, conditions: dict[str, Any], relaxes: bool
 ) -> Condensed | None:
     """Condense the rollers of a bearing; None without films, or without a load.
 
     Parameters
     ----------
-    force, conditions
+    force, rollers, conditions
         The same as of `line_relaxation`.
     relaxes : bool
         Whether films have a memory.
