@@ -69,6 +69,8 @@ class LsaResult:
         Equilibrium at which the system was linearised, gear meshes and bearings with their mean stiffness.
     space : StateSpace
         State space from the inputs of the scene to its sensors.
+    states : StateModes
+        Its modes as a state space has them.
     modes : Modes
         Complex modes, around which there are more frequencies.
     asked : int
@@ -96,6 +98,7 @@ class LsaResult:
     model: Model
     balance: Equilibrium
     space: StateSpace
+    states: StateModes
     modes: Modes
     asked: int
     frequencies: FloatArray
@@ -114,7 +117,14 @@ class LsaResult:
         from mbs.unknowns.of_peaks import peak_bands
 
         sizes = np.abs(self.responses)
-        return peak_bands(self.model, self.balance, self.modes, self.frequencies, sizes, self.level_error)
+        return peak_bands(self.model, self.balance, self.modes, self.frequencies, sizes, self._level_error_at)
+
+    def _level_error_at(self, frequencies: FloatArray) -> FloatArray | None:
+        """Bands of the levels of the responses at other frequencies, as `level_error`."""
+        scene, balance = self.model.scene, self.balance
+        motion = responses_of(balance, scene.inputs, frequencies)
+        responses = sensed(balance, scene.sensors, frequencies, motion)
+        return level_bands(balance, self.states, scene.sensors, frequencies, motion, responses)[0]
 
     def bounded(self) -> xr.Dataset:
         """The data set with the peaks of the responses and their bounds."""
@@ -268,6 +278,7 @@ def _responded(found: _Linearised, frequencies: FloatArray) -> LsaResult:
         model=model,
         balance=balance,
         space=space,
+        states=states,
         modes=modes,
         asked=asked,
         frequencies=frequencies,

@@ -1,11 +1,13 @@
 """Bands of the peaks of frequency responses: each look follows the mode of a peak, and reads the response there.
 
-Heights are in dB, for what is not known of damping multiplies them.
+Heights are in dB, for what is not known of damping multiplies them. What numerics leave open of a height is taken at
+the top of its peak: at a frequency beside it, a resonance that shifts moves the level far more than the height.
 """
 
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +30,9 @@ _WIDE = 3.0
 
 _NEAR = 0.005
 """The same as a part of the frequency."""
+
+_CLOSE = 0.3
+"""Distance from a top at which its peak is looked at again, in parts of that between frequencies there."""
 
 _LEAST = 1e-300
 
@@ -60,7 +65,7 @@ def peak_bands(
     found: Modes,
     frequencies: FloatArray,
     sizes: FloatArray,
-    errors: FloatArray | None,
+    errors: Callable[[FloatArray], FloatArray | None],
 ) -> PeakBands:
     """Bands of the peaks of the responses of a model that belong to one of its modes.
 
@@ -76,8 +81,8 @@ def peak_bands(
         [Hz].
     sizes : array, shape (frequencies, sensors, inputs)
         Sizes of the responses.
-    errors : array of the same shape, or None
-        What numerics leave open of their levels [dB].
+    errors : callable
+        What numerics leave open of their levels [dB] at other frequencies [Hz]; None where that is not known.
     """
     chosen = banded(found, float(frequencies[-1]))
     places, own = _peaks(found, chosen, frequencies, sizes)
@@ -87,8 +92,8 @@ def peak_bands(
     numerics = np.zeros_like(values)
     if found.bands is not None:
         numerics[0] = found.bands.frequency[chosen[own]]
-    if errors is not None:
-        numerics[1] = errors[at]
+    if places.size and (at_tops := errors(_tops(balance, model.scene, frequencies, sizes, places))) is not None:
+        numerics[1] = at_tops[np.arange(places.shape[0]), places[:, 1], places[:, 2]]
     # Looks read the response beside the mode alone: what that misses of the printed peak is in all of them alike.
     missed = values - look.values(balance, found)
     both = band(lambda scene, standing: look(scene, standing) + missed, values, held_open_of(model), numerics)
@@ -144,6 +149,31 @@ def _peaks(found: Modes, chosen: IntArray, frequencies: FloatArray, sizes: Float
                 places.append((k, sensor, entry))
                 own.append(int(np.argmin(apart)))
     return np.array(places, dtype=np.int64).reshape(-1, 3), np.array(own, dtype=np.int64)
+
+
+def _tops(
+    balance: Equilibrium, scene: Scene, frequencies: FloatArray, sizes: FloatArray, places: IntArray
+) -> FloatArray:
+    """Frequencies of the tops of peaks between those beside them, shape (peaks,) [Hz]: from the axis, then closer."""
+    beside = places[:, 0] + np.array([[-1], [0], [1]])
+    top = _lowest(frequencies[beside], sizes[beside, places[:, 1], places[:, 2]])
+    near = top + _CLOSE * np.diff(frequencies[beside], axis=0).min(axis=0) * np.array([[-1.0], [0.0], [1.0]])
+    response = np.abs(frequency_response(balance, scene.inputs, scene.sensors, near.reshape(-1)))
+    row = np.arange(near.size).reshape(near.shape)
+    return _lowest(near, response[row, places[:, 1], places[:, 2]])
+
+
+def _lowest(frequencies: FloatArray, sizes: FloatArray) -> FloatArray:
+    """Frequency of the top of peaks by three of their frequencies, shape (3, peaks).
+
+    Of one mode 1/|H|^2 is a parabola of the frequency, whose lowest place is the top.
+    """
+    first, middle, last = frequencies
+    depth = (sizes.max(axis=0) / sizes) ** 2
+    before, after = (depth[1] - depth[0]) / (middle - first), (depth[2] - depth[1]) / (last - middle)
+    bend = (after - before) / (last - first)
+    top = 0.5 * (first + middle) - 0.5 * before / np.where(bend > 0.0, bend, np.inf)
+    return np.asarray(np.where(bend > 0.0, np.clip(top, first, last), middle))
 
 
 def _level(size: FloatArray) -> FloatArray:
