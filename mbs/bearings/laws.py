@@ -18,9 +18,10 @@ from __future__ import annotations
 import dataclasses
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -41,8 +42,35 @@ from mbs.bearings.cylinder import CELLS, POWER, ROWS, LawNumbers, functions
 if TYPE_CHECKING:
     from ehdmaps.maps.kernels.law_in_c import LawRecord
     from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
-    from ehdmaps.physics.closed_form import FilmFormula, FormulaSolver
+    from ehdmaps.physics.closed_form import DampingFormula, FilmFormula, FormulaSolver
 
+
+class Formula(NamedTuple):
+    """A law of the film formula of Moes.
+
+    Attributes
+    ----------
+    damping : {"rigid", "dietl"}
+        What gives its damping, as in `ehdmaps.physics.closed_form.FormulaSolver`.
+    label, words : str
+        The law in two words, and in a few.
+    remark : str
+        What is to be known of it.
+    """
+
+    damping: DampingFormula
+    label: str
+    words: str
+    remark: str = ""
+
+
+_TOO_LOW = " (its damping is far too low for loaded contacts)"
+
+FORMULAS: Mapping[str, Formula] = {
+    "formula": Formula("rigid", "film formula", "film formula moes", _TOO_LOW),
+    "dietl": Formula("dietl", "Dietl's damping", "film formula moes, damping by Dietl's regression"),
+}
+"""Laws of the film formula by their names in commands."""
 
 _EXPONENT = 10.0 / 9.0
 
@@ -280,6 +308,7 @@ def formula(
     entrainment_speed: tuple[float, float] = (0.05, 10.0),
     temperature: tuple[float, float] = (293.15, 393.15),
     film_formula: FilmFormula = "moes",
+    damping: DampingFormula = "rigid",
     structural_law: StructuralLaw = "iso16281",
     kind: LawKind = "series",
     outside: OutsidePolicy = "error",
@@ -296,7 +325,7 @@ def formula(
         The oil.
     load, entrainment_speed, temperature : (float, float)
         Lowest and highest [N/m], [m/s], [K], as of a map.
-    film_formula, structural_law
+    film_formula, damping, structural_law
         See `ehdmaps.physics.closed_form.FormulaSolver` and `ehdmaps.physics.approach`.
     kind, outside
         See `ContactLaw`.
@@ -331,7 +360,7 @@ def formula(
     speeds = _axis(entrainment_speed, 0.25)
     temperatures = np.linspace(*temperature, max(4, math.ceil((temperature[1] - temperature[0]) / 8.0) + 1))
     # a law has corners of cold oil and light loads that no bearing comes to: its films fade there
-    solver = FormulaSolver(film_formula, math.inf)
+    solver = FormulaSolver(film_formula, math.inf, damping)
     films = [_films(contact, lubricant, solver, loads, speeds, temperatures) for contact in chosen]
     offset, compliance, loss = (np.stack(part) for part in zip(*films, strict=True))
     field = GridField(chosen, lubricant, loads, speeds, temperatures, offset, compliance, loss)

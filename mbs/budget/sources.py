@@ -18,6 +18,7 @@ from ehdmaps.physics.surface import Surface
 from ehdmaps.trade.record import Choice, Entry, ErrorSummary, Group, Judged, Source, Trade
 from ehdmaps.units import RPM
 from mbs.analyses.operating import settled
+from mbs.bearings.laws import FORMULAS
 from mbs.budget.linear_look import LinearDifferences, LinearLook, LinearReference, linear_look
 from mbs.scene.assembly import Model
 from mbs.scene.changes import with_clearance_of
@@ -225,7 +226,7 @@ def _others(base: Subject, model: Model) -> Iterator[Tried]:
 def _laws(base: Subject) -> Iterator[Tried]:
     """Laws from dry to the most complete one."""
     memory, group = base.law, Group("law", base)
-    has_map = memory.name != "formula"
+    has_map = memory.name not in FORMULAS
     has_formula = has_map and not base.scene.has_points  # balls have none
     laws = [
         (LawChoice(law_label("hertz"), "hertz"), not has_map),

@@ -51,7 +51,7 @@ maps; those for which oil has a temperature; the reference."""
 _NO_MAP = "without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`, or --law table"
 
 LACKS = {
-    "relaxing": "without a law that has films; allowed: with --map, --law table or formula",
+    "relaxing": "without a law that has films; allowed: with --map, --law table, formula or dietl",
     "heat": _NO_MAP,
     "maps": _NO_MAP,
 }
@@ -345,10 +345,11 @@ _ROWS = (
     SceneChoice(
         "law",
         "LAW",
-        "hertz | hertz:TIME | hertz:DAMPING | table:FILE.csv | formula | table | constant:NAME | map. table: films of "
-        "the scene's oil from the film table, without a map. TIME is damping over stiffness of a dry contact "
-        "('hertz:1.25e-5 s'; usual: 0.25e-5 to 2.5e-5 s), DAMPING a constant one ('hertz:100 N s/m' of each contact of "
-        "a roller), FILE.csv has points of approach, load and damping, NAME a table [laws.NAME]",
+        "hertz | hertz:TIME | hertz:DAMPING | table:FILE.csv | formula | dietl | table | constant:NAME | map. dietl: "
+        "that formula with Dietl's damping. table: films of the scene's oil from the film table, without a map. TIME "
+        "is damping over stiffness of a dry contact ('hertz:1.25e-5 s'; usual: 0.25e-5 to 2.5e-5 s), DAMPING a "
+        "constant one ('hertz:100 N s/m' of each contact of a roller), FILE.csv has points of approach, load and "
+        "damping, NAME a table [laws.NAME]",
         "map with --map, else table, or hertz of a {file} without oil",
         str,
         _with_law,

@@ -25,13 +25,14 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import NO_CENTRIFUGAL
 from mbs.bearings.bearing_force import NO_COUPLED_MEMORY
 from mbs.bearings.films import DryContacts, FilmSource, FormulaFilms, MapFilms
-from mbs.bearings.laws import DryLaw, Law, TableLaw, curve_problems
+from mbs.bearings.laws import FORMULAS, DryLaw, Law, TableLaw, curve_problems
 from mbs.model.relaxation import DEFAULT_FILMS, FILM_WORDS, Films
 from mbs.scene.map_set import TABLE_LAW, speeds_of_laws, table_maps
 
 if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
     from ehdmaps.maps.law import ContactLaw, LawKind
+    from ehdmaps.physics.closed_form import DampingFormula
     from mbs.scene.map_set import MapSet
     from mbs.scene.scene import Scene
     from mbs.scene.specs import BearingSpec, LocatingSpec
@@ -130,10 +131,13 @@ HERTZ_FORMS = "hertz:TIME such as 'hertz:1.25e-5 s', hertz:DAMPING such as 'hert
 TABLE_FORM = "table:FILE.csv"
 """The form of the dry law by points, for messages."""
 
+_FILM_LAWS = "map, formula and dietl"
+"""Laws of cylindrical roller bearings that have films, in words."""
+
 NO_LAW = "no contact law"
 """Label of a law in a scene without roller bearings."""
 
-_LABELS = {"hertz": "dry Hertz", "formula": "film formula", TABLE_LAW: "film table"}
+_LABELS = {"hertz": "dry Hertz", TABLE_LAW: "film table", **{name: one.label for name, one in FORMULAS.items()}}
 
 
 def law_in_force(
@@ -321,7 +325,7 @@ class ContactLaws:
     Attributes
     ----------
     chosen : str
-        hertz, hertz:TIME, hertz:DAMPING, formula, constant:NAME, table:FILE or map.
+        hertz, hertz:TIME, hertz:DAMPING, one of `FORMULAS`, constant:NAME, table:FILE or map.
     scene : Scene
         Scene with its oil and its constant laws.
     maps : MapSet or None
@@ -343,7 +347,7 @@ class ContactLaws:
         """Problems with the choice of the law."""
         scene = self.scene
         names = tuple(f"{_CONSTANT}{name}" for name in scene.laws)
-        allowed = ("hertz", "formula", *names, TABLE_LAW, "map")
+        allowed = ("hertz", *FORMULAS, *names, TABLE_LAW, "map")
         try:
             damper = hertz_damper(self.chosen)
         except InputError as error:
@@ -358,13 +362,13 @@ class ContactLaws:
         maps = self._maps_in_force if scene.surface is None else None
         if maps is not None and (wrong := maps.surface_problems()):
             return wrong
-        if self.chosen == "formula" and scene.lubricant is None:
-            return [f"--law: got 'formula', but {scene.name} has no [lubricant]; add the table to the scene"]
+        if self.chosen in FORMULAS and scene.lubricant is None:
+            return [f"--law: got {self.chosen!r}, but {scene.name} has no [lubricant]; add the table to the scene"]
         centrifugal = [entry.name for entry in scene.bearings if entry.centrifugal and not entry.rollers_as_bodies]
-        if centrifugal and self.chosen not in ("map", "formula"):
+        if centrifugal and not self._has_films:
             return [
                 f"--law: got {self.chosen!r} with centrifugal = true in {', '.join(centrifugal)}; allowed: the laws "
-                "map and formula, which bring a roller into equilibrium; or centrifugal = false"
+                f"{_FILM_LAWS}, which bring a roller into equilibrium; or centrifugal = false"
             ]
         if self.asked not in (None, *get_args(Films)):
             return [f"--films: got {self.asked!r:.60}; allowed: {', '.join(get_args(Films))}"]
@@ -381,7 +385,7 @@ class ContactLaws:
             return []
         if not self._has_films:
             got = f"--films: got 'memory' with the law {self.chosen!r:.60}"
-            return [f"{got}; allowed: the laws map and formula, which have films"]
+            return [f"{got}; allowed: the laws {_FILM_LAWS}, which have films"]
         bearings = self.scene.bearings
         centrifugal = [entry.name for entry in bearings if entry.centrifugal and not entry.rollers_as_bodies]
         coupled = [entry.name for entry in bearings if entry.slices_coupled]
@@ -410,7 +414,7 @@ class ContactLaws:
 
     def films_of(self, spec: LocatingSpec) -> bool:
         """Tell whether a bearing that carries axial load has films."""
-        return self.chosen in (TABLE_LAW, "map") or (self.chosen == "formula" and not spec.of_points)
+        return self.chosen in (TABLE_LAW, "map") or (self.chosen in FORMULAS and not spec.of_points)
 
     @property
     def conditions(self) -> FilmConditions:
@@ -456,7 +460,7 @@ class ContactLaws:
         if (emap := self.map_of(bearing.geometry)) is not None:
             return MapFilms(emap, supply)
         contacts = bearing.geometry.contacts(bearing.material, "iso16281")
-        return FormulaFilms(contacts, self.lubricant, supply) if self.chosen == "formula" else DryContacts(contacts)
+        return FormulaFilms(contacts, self.lubricant, supply) if self.chosen in FORMULAS else DryContacts(contacts)
 
     @property
     def lubricant(self) -> Lubricant:
@@ -494,15 +498,15 @@ class ContactLaws:
     @property
     def _has_films(self) -> bool:
         """True where the law has films."""
-        return self.chosen in ("map", "formula")
+        return self.chosen == "map" or self.chosen in FORMULAS
 
     @property
     def _law_words(self) -> str:
         """The law without its films."""
         if (maps := self._maps_in_force) is not None:
             return maps.words
-        if self.chosen == "formula":
-            return f"film formula moes, {self.lubricant.title}"
+        if self.chosen in FORMULAS:
+            return f"{FORMULAS[self.chosen].words}, {self.lubricant.title}"
         if words := dry_words(self.chosen):
             return words
         name = self.chosen.removeprefix(_CONSTANT)
@@ -531,7 +535,7 @@ class BearingLaws:
     @cached_property
     def series(self) -> Law:
         """Law of a roller between both raceways."""
-        if self.given.chosen in ("map", "formula"):
+        if self.given.chosen == "map" or self.given.chosen in FORMULAS:
             return self._of_kind("series")
         if (path := table_path(self.given.chosen)) is not None:
             return read_law(path, self.bearing.geometry.roller_length)
@@ -553,8 +557,8 @@ class BearingLaws:
         if (emap := self.given.map_of(self.bearing.geometry)) is not None:
             return emap.law(kind, outside="clamp", supply=self.supply, surface=surface)
         speeds = speeds_of_laws(self.bearing.geometry, self.given.scene)
-        bearing, oil = self.bearing, self.given.lubricant
-        return _of_formula(bearing.geometry, bearing.material, oil, speeds, kind, self.supply, surface).again()
+        bearing, oil, damping = self.bearing, self.given.lubricant, FORMULAS[self.given.chosen].damping
+        return _of_formula(bearing.geometry, bearing.material, oil, speeds, damping, kind, self.supply, surface).again()
 
 
 @lru_cache(maxsize=8)
@@ -563,6 +567,7 @@ def _of_formula(
     material: Material,
     lubricant: Lubricant,
     speeds: tuple[float, float],
+    damping: DampingFormula,
     kind: LawKind,
     supply: OilSupply,
     surface: Surface | None,
@@ -570,5 +575,12 @@ def _of_formula(
     """Law of the film formula, made once for all models with such bearings, however many slices their rollers have."""
     bearing = Bearing(geometry, material=material)
     return laws.formula(
-        bearing, lubricant, entrainment_speed=speeds, kind=kind, outside="clamp", supply=supply, surface=surface
+        bearing,
+        lubricant,
+        entrainment_speed=speeds,
+        damping=damping,
+        kind=kind,
+        outside="clamp",
+        supply=supply,
+        surface=surface,
     )

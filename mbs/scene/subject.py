@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ehdmaps.errors import EhdmapsError, InputError
+from mbs.bearings.laws import FORMULAS
 from mbs.model.relaxation import Films
 from mbs.scene.map_set import TABLE_LAW
 
@@ -53,7 +54,7 @@ class LawChoice:
     @property
     def has_films(self) -> bool:
         """Tell whether it knows an oil."""
-        return self.name in ("map", "formula") or (self.name is None and self.maps is not None)
+        return self.name == "map" or self.name in FORMULAS or (self.name is None and self.maps is not None)
 
     @property
     def may_relax(self) -> bool:

@@ -10,9 +10,12 @@ import sys
 import numpy as np
 import pytest
 from numba import njit
+from scipy.optimize import brentq
 
 from ehdmaps.errors import InputError
 from ehdmaps.kernel.library import checked
+from ehdmaps.physics.films import dietl_damping
+from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
@@ -159,6 +162,18 @@ def test_formula_law_stands_between_dry_and_film():
     assert film[1] < 1.05 * dry[1] < 0.0
     assert C[1, 1] > 0.0
     assert np.all(no_damping == 0.0)
+
+
+def test_dietl_is_the_formula_with_the_damping_of_equation_23():
+    """At 1.8 kN on a roller of an NU308: 3 % is twice the share of the film in the compliance."""
+    each, oil = Bearing.named("NU308"), Lubricant.named("FVA3")
+    assert set(laws.FORMULAS) == {"formula", "dietl"}
+    made = ContactLaws("dietl", dataclasses.replace(read_scene("nu308_rigid"), lubricant=oil), None).of(each, FLOODED)
+    law, contact, state = made.single[0], each.geometry.contacts(each.material, "iso16281")[0], oil.at(313.15)
+    approach = brentq(lambda delta: float(law(delta, 0.0, 1.7, 313.15)[0]) - 1.8e5, 1e-6, 3e-5)
+    damping = float(law(approach, 0.0, 1.7, 313.15)[2]) * each.geometry.roller_length
+    numbers = state.viscosity, state.pressure_viscosity.pressure_viscosity, contact.radius, contact.reduced_modulus
+    assert damping == pytest.approx(dietl_damping(1.8e5, 1.7, *numbers, each.geometry.roller_length), rel=0.03)
 
 
 def test_at_gives_the_same_numbers_as_calling():

@@ -66,7 +66,7 @@ def _read(arguments: argparse.Namespace, chosen: Mapping[str, Any], problems: li
         problems.append(f"--{STRUCTURE.name}: got {structure} {LACKS['maps']}")
     if law == "map" and "map" not in chosen:
         problems.append("--law: got 'map' without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`")
-    if "map" in chosen and chosen.get("law") in ("formula", TABLE_LAW):
+    if "map" in chosen and law in (*laws.FORMULAS, TABLE_LAW) and "law" in chosen:
         problems.append(f"--law: got {law!r} with a map; allowed: hertz or map with --map; leave one of the two out")
     if "map" in chosen and arguments.oil is not None:
         got = short(arguments.oil)
@@ -293,12 +293,13 @@ def _table_map(
 def _words_of(request: Request) -> tuple[str, str]:
     """Law and films."""
     law, emap, oil = request.law, request.asked.emap, request.oil
-    words = f"film formula moes, {oil.title} (its damping is far too low for loaded contacts)"
     if law in ("map", TABLE_LAW) and emap is not None:
         heat = ", inlet heat" if emap.inlet_heat else ""
         table = f"film table, {oil.title}{heat}" if emap.from_table else f"map of {oil.title}, solver {emap.solver}"
         words = table + structure_words(emap)
-    elif law != "formula":
+    elif (formula := laws.FORMULAS.get(law)) is not None:
+        words = f"{formula.words}, {oil.title}{formula.remark}"
+    else:
         words = dry_words(law)
     return words, _films(request).words
 
@@ -324,7 +325,7 @@ def _law_of(request: Request, bearing: Bearing) -> Law:
     law, emap, supply, surface = request.law, request.asked.emap, request.conditions.supply, request.conditions.surface
     if law in ("map", TABLE_LAW) and emap is not None:
         return emap.law("series", outside="clamp", supply=supply, surface=surface)
-    if law == "formula":
+    if law in laws.FORMULAS:
         turning = [speed for speed in request.operating.speeds if speed > 0.0] or [1.0]
         u = [bearing.geometry.entrainment_speed(speed) for speed in (min(turning), max(turning))]
         kelvin = request.description.temperature
@@ -334,6 +335,7 @@ def _law_of(request: Request, bearing: Bearing) -> Law:
             load=FORMULA_LOADS,
             entrainment_speed=(u[0] / 1.1, u[1] * 1.1),
             temperature=(kelvin, kelvin + 2.0),
+            damping=laws.FORMULAS[law].damping,
             outside="clamp",
             supply=supply,
             surface=surface,
@@ -384,7 +386,7 @@ CYLINDERS = Family(
     words="cylindrical roller bearing",
     taken=("law", "map", "physics", "structural-law", "supply", "roughness", "temperature", "clearance"),
     own=("ring-temperatures", "profile", "slices", "coupled"),
-    film_laws=("formula", TABLE_LAW, "map"),
+    film_laws=(*laws.FORMULAS, TABLE_LAW, "map"),
     beside_laws=f"; {TABLE_FORM}",
     memory=(),
     spec=BearingSpec,

@@ -17,6 +17,7 @@ from ehdmaps.physics.oil_supply import FLOODED, FilmConditions
 from ehdmaps.physics.surface import SMOOTH
 from ehdmaps.units import TEMPERATURE
 from mbs.analyses.bearing_point import points_over, without_holes
+from mbs.bearings.laws import FORMULAS
 from mbs.commands.one_bearing.bands import NAME, point_bands, scene_of, turned
 from mbs.commands.one_bearing.family import AtSpeed, Family, Request
 from mbs.commands.one_bearing.files import SOURCE, UNIT, Export, bearing_outputs, is_export, write_export
@@ -76,7 +77,7 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
     stated = None if asked is None else asked.oil
     oil = read_oil(arguments.oil, temperature, problems, stated)
     lack = f"with dry contacts; allowed: with --law {TABLE_LAW}" if dry else ""
-    if law in ("map", "formula"):
+    if law == "map" or law in FORMULAS:
         lack = f"without films of the film table; allowed: with --law {TABLE_LAW}"
     heat = read_heat(chosen, oil, lack, problems)
     if "supply" in chosen and dry and family.kind.axial:  # of others it is in the films of formulas, too

@@ -6,7 +6,7 @@ import argparse
 import dataclasses
 import math
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.catalogue import designated
@@ -14,6 +14,7 @@ from ehdmaps.physics.rollers.ribbed_geometry import ribbed_estimate
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.units import RPM
+from mbs.bearings.laws import FORMULAS
 from mbs.bearings.tapered.line_film import LineFilms
 from mbs.bearings.tapered.tapered_bearing import MOST_SLICES, SLICES, TaperedForce
 from mbs.bearings.tapered.tapered_point import TaperedPoint
@@ -26,9 +27,6 @@ from mbs.scene.specs import TaperedSpec
 
 if TYPE_CHECKING:
     from mbs.exports.one_bearing.kind import ExportKind
-
-FORMULA = "formula"
-"""Law with films by the formula of Moes."""
 
 _TAKEN = ("law", "physics", "temperature", "supply", "roughness", "films")
 """Choices that all of them take; those without a contact angle have a clearance too."""
@@ -99,8 +97,8 @@ def _words_of(request: Request) -> tuple[str, str]:
         rough = "" if conditions.surface.smooth else f", {conditions.surface.label}"
         warm = ", inlet heat" if conditions.inlet_heat else ""
         layer = "" if conditions.supply.flooded else f", {conditions.supply.label}"
-        by_formula = "film formula moes (its damping is far too low for loaded contacts)"
-        source = by_formula if request.law == FORMULA else "film table"
+        formula = FORMULAS.get(request.law)
+        source = f"{formula.words}{formula.remark}" if formula else "film table"
         return f"{source} at radius and speed of the middle{warm}{layer}, rib dry{rough}", films
     return "dry, ISO/TS 16281, rib Hertz" + (f", {damper.words} of each contact" if damper.words else ""), films
 
@@ -119,7 +117,7 @@ def _films(request: Request) -> Callable[[float], LineFilms] | None:
     from mbs.scene.locating.line_films import FilmsOfLines, OilOfLines
 
     geometry, temperature = request.force.geometry, request.description.temperature
-    law: Literal["table", "formula"] = "formula" if request.law == FORMULA else "table"
+    law = request.law if request.law in FORMULAS else TABLE_LAW
     oil = OilOfLines(law, request.oil, temperature, fastest, request.conditions)
     films = FilmsOfLines(geometry, oil)
     return lambda u: films(u / geometry.entrainment_speed(1.0), 0.0)
@@ -163,7 +161,7 @@ TAPERED_BEARINGS = Family(
     words="tapered roller bearing",
     taken=_TAKEN,
     own=("profile", "slices"),
-    film_laws=(TABLE_LAW, FORMULA),
+    film_laws=(TABLE_LAW, *FORMULAS),
     beside_laws="",
     memory=(".c", ".fmu"),
     spec=TaperedSpec,

@@ -10,6 +10,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.units import TEMPERATURE
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.laws import dry_law
+from mbs.bearings.laws import FORMULAS
 from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.model.relaxation import FILM_WORDS
@@ -53,7 +54,7 @@ class _Kind:
 def _oil_of_lines(laws: ContactLaws, temperature: float, fastest: float = 0.0) -> OilOfLines:
     """Films of lines by the law in force."""
     return OilOfLines(
-        "formula" if laws.chosen == "formula" else "table",
+        laws.chosen if laws.chosen in FORMULAS else "table",
         laws.lubricant,
         temperature,
         fastest,
@@ -78,10 +79,11 @@ def _sources_of_points(laws: ContactLaws) -> tuple[str, str]:
 def _sources_of_lines(laws: ContactLaws) -> tuple[str, str]:
     """Films of lines in words."""
     films = _oil_of_lines(laws, 0.0)
-    source = "film formula moes" if films.law == "formula" else "films from the film table"
+    by_formula = FORMULAS.get(films.law)
+    source = by_formula.words if by_formula else "films from the film table"
     return (
         f"{source} at radius and speed of the middle of rollers, {films.oil.title}, "
-        f"{'' if films.law == 'formula' else 'inlet heat, ' * films.conditions.inlet_heat}"
+        f"{'' if by_formula else 'inlet heat, ' * films.conditions.inlet_heat}"
         f"{films.conditions.supply.label}, {surface_label(films.conditions.surface)}",
         ", ribs dry",
     )
@@ -107,7 +109,7 @@ _KINDS: dict[type[LocatingSpec], _Kind] = {
         films=films_of_balls,
     ),
     TaperedSpec: _Kind(
-        allowed="table, formula",
+        allowed="table, formula, dietl",
         words=lambda spec: str(spec.geometry.kind).replace("bearing", "roller bearing"),
         sources=_sources_of_lines,
         force=_dry_rollers,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.heat import beyond_rule
@@ -16,6 +16,8 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import PLAIN, FilmConditions
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.physics.solids import STEEL
+from mbs.bearings import laws
+from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.tapered.line_film import LOADS, LineFilms, cylinder_of, line_films
 
@@ -33,8 +35,8 @@ class OilOfLines:
 
     Attributes
     ----------
-    law : {"table", "formula"}
-        Source of the films: the film table, or the formula of Moes.
+    law : str
+        Source of the films: "table" for the film table, or one of `FORMULAS` of `mbs.bearings.laws`.
     oil : Lubricant
         The oil.
     temperature : float
@@ -45,7 +47,7 @@ class OilOfLines:
         Heat in the inlet of films of the table, oil supply and surfaces.
     """
 
-    law: Literal["table", "formula"]
+    law: str
     oil: Lubricant
     temperature: float
     fastest: float = 0.0
@@ -74,7 +76,7 @@ class FilmsOfLines:
 
     def note(self, inner_speed: float, outer_speed: float) -> str:
         """Remark on the films at speeds of the rings [rad/s]; empty where there is nothing to say."""
-        if not self.films.conditions.inlet_heat or self.films.law == "formula":
+        if not self.films.conditions.inlet_heat or self.films.law in laws.FORMULAS:
             return ""
         u = abs(self.geometry.entrainment_speed(inner_speed, outer_speed))
         return beyond_rule(self.films.oil, u, self.temperature)
@@ -92,7 +94,7 @@ class FilmsOfLines:
     @property
     def source(self) -> str:
         """Name what films are read from, for people."""
-        return "the film table" if self.films.law == "table" else "the table of the film formula"
+        return "the table of the film formula" if self.films.law in laws.FORMULAS else "the film table"
 
     @property
     def slowest(self) -> float:
@@ -124,7 +126,7 @@ def _map(cylinder: BearingGeometry, films: OilOfLines) -> EHDMap:
 @functools.lru_cache(maxsize=16)
 def _lines(cylinder: BearingGeometry, films: OilOfLines) -> FilmSource:
     """Pressures, films and rolling forces."""
-    if films.law == "formula":
+    if films.law in laws.FORMULAS:
         return FormulaFilms(cylinder.contacts(STEEL, "iso16281"), films.oil, films.conditions.supply)
     return MapFilms(_map(cylinder, films), films.conditions.supply)
 
@@ -138,16 +140,14 @@ def _speeds(films: OilOfLines) -> tuple[float, float]:
 def _laws(cylinder: BearingGeometry, films: OilOfLines) -> tuple[ContactLaw, ContactLaw]:
     """Laws of the inner and the outer contact, held where the table ends."""
     speeds = _speeds(films)
-    if films.law == "formula":
-        from mbs.bearings import laws
-        from mbs.bearings.bearing import Bearing
-
+    if films.law in laws.FORMULAS:
         inner, outer = (
             laws.formula(
                 Bearing(cylinder),
                 films.oil,
                 load=LOADS,
                 entrainment_speed=speeds,
+                damping=laws.FORMULAS[films.law].damping,
                 kind=kind,
                 outside="clamp",
                 supply=films.conditions.supply,
