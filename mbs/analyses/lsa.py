@@ -70,7 +70,7 @@ class LsaResult:
     space : StateSpace
         State space from the inputs of the scene to its sensors.
     states : StateModes
-        Its modes as a state space has them.
+        Modes of its state space, by which responses are found.
     modes : Modes
         Complex modes, around which there are more frequencies.
     asked : int
