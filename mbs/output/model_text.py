@@ -128,11 +128,13 @@ def assumed_words(scene: Scene) -> str:
 def _estimated(model: Model) -> list[str]:
     """A line for each kind of bearing with suffixes, or with an estimated inner geometry, and for estimated gears."""
     kinds: dict[tuple[str, str], list[str]] = {}
-    for entry in (*model.scene.bearings, *model.scene.located):
-        spelled = entry.geometry.spelled or ""
-        for words in (spelled if "; " in spelled else "", entry.geometry.estimated):
+    named = [(entry.name, entry.geometry) for entry in model.scene.bearings]
+    named += [(entry.name, entry.geometry) for entry in model.scene.located]
+    for bearing, geometry in named:
+        spelled = geometry.spelled or ""
+        for words in (spelled if "; " in spelled else "", geometry.estimated):
             if words:
-                kinds.setdefault((entry.geometry.name, words), []).append(entry.name)
+                kinds.setdefault((geometry.name, words), []).append(bearing)
     lines = [f"  {name} ({', '.join(bearings)}): {words}" for (name, words), bearings in kinds.items()]
     return lines + [f"  {pair.estimate}" for pair in model.scene.gears if pair.estimate]
 

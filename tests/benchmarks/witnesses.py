@@ -23,6 +23,7 @@ from tests.cases.witnesses import (
     iso_16281,
     measured_capacitance,
     measured_films,
+    thin_pairs,
 )
 
 
@@ -82,7 +83,7 @@ def main() -> None:
     asked = parser.parse_args()
     pairs, films, line, iso = gmn_pairs(), measured_films(), centre_line(), iso_16281()
     electric = measured_capacitance()
-    every = [*pairs, *films, *line, hamrock_dowson(), *electric, *iso]
+    every = [*pairs, *thin_pairs(), *films, *line, hamrock_dowson(), *electric, *iso]
     print("\n".join([*table(every), between_grooves(*pairs)]))
     if asked.points:
         print("\n".join(points(every)))
@@ -91,7 +92,8 @@ def main() -> None:
         grooves = "grooves 0.515, 0.52, the default", "grooves 0.52, 0.53"
         degrees = (one.name.partition(" at ")[2].partition(",")[0] for one in films)
         groups = (
-            ("axial rigidity of pairs, GMN (59)", [*zip(grooves, pairs, strict=True)]),
+            ("axial rigidity of pairs, GMN (228)", [*zip(grooves, pairs, strict=True)]),
+            ("axial rigidity of pairs 719 (400)", [*zip(("GMN", "NSK"), thin_pairs()[:2], strict=True)]),
             ("central films of FVA 3 (29)", [*zip(degrees, films, strict=True)]),
             ("plateau along a centre line, Mourier", [(one.name.partition(", ")[2], one) for one in plateaus]),
             ("smallest films (8)", [("Hamrock and Dowson", hamrock_dowson())]),

@@ -81,8 +81,8 @@ def pair_rigidity(geometry: BallGeometry, preload: float) -> float:
 
 @cache
 def gmn_pairs() -> tuple[Series, Series]:
-    """Axial rigidity of pairs by GMN's catalogue beside estimated bearings: with our grooves, and with loose ones."""
-    table = rows("gmn_pair_rigidity")
+    """Axial rigidity of pairs 70, 72 by GMN's catalogue beside estimates: with our grooves, and loose ones."""
+    table = [row for row in rows("gmn_pair_rigidity") if row["designation"][:2] != "71"]
     theirs = np.array([float(row["pair_axial_rigidity_N_per_um"]) for row in table])
     labels = tuple(f"{row['designation']} {row['preload_N']} N" for row in table)
     estimates = [ball_estimate(row["designation"]) for row in table]
@@ -101,6 +101,21 @@ def gmn_pairs() -> tuple[Series, Series]:
     )
     first, second = (Series(name, "N/um", labels, theirs, each) for name, each in zip(names, ours, strict=True))
     return first, second
+
+
+@cache
+def thin_pairs() -> tuple[Series, ...]:
+    """The same of 718 and 719 by GMN, of 719 by NSK."""
+
+    def of(file: str, whose: str, series: str) -> Series:
+        table = [row for row in rows(file) if row["designation"].startswith(series)]
+        theirs = np.array([float(row["pair_axial_rigidity_N_per_um"]) for row in table])
+        labels = tuple(f"{row['designation']} {row['preload_N']} N" for row in table)
+        ours = [1e-6 * pair_rigidity(ball_estimate(row["designation"]), float(row["preload_N"])) for row in table]
+        return Series(f"axial rigidity of pairs {series}, {whose}", "N/um", labels, theirs, np.array(ours))
+
+    gmn, nsk = "gmn_pair_rigidity", "nsk_pair_rigidity"
+    return of(gmn, "GMN", "719"), of(nsk, "NSK", "719"), of(gmn, "GMN", "718")
 
 
 @cache

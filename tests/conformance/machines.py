@@ -140,6 +140,7 @@ KINDS = (
     Machine("rollers as bodies", alike(FEW), axial=False),
     Machine("needle", alike(NEEDLE), axial=False),
     Machine("deep groove", alike(BALL)),
+    Machine("hybrid, thin section", (("left", 'bearing = "6208 HC"'), ("right", 'bearing = "61912"'))),
     Machine("angular contact", preloaded(ANGULAR), heavy=(1.0, -0.3, 0.0)),
     Machine("tapered", preloaded(TAPERED), heavy=(0.25, -1.0, 0.0)),
     Machine("ribbed NUP", alike(NUP)),

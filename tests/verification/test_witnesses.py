@@ -10,24 +10,36 @@ import pytest
 from mbs.commands.bearing import family_of
 from mbs.commands.one_bearing.request import bands_of, points_of, read_request
 from mbs.scene.choices import OPTIONS
-from tests.cases.witnesses import centre_line, gmn_pairs, iso_16281, measured_films, rows
+from tests.cases.witnesses import centre_line, gmn_pairs, iso_16281, measured_films, rows, thin_pairs
 
 
 def test_pairs_are_as_stiff_as_their_maker_says() -> None:
     """Grooves that the catalogue leaves open make 12 %: the median within a third of that, all points within it, and
-    nearly all between ours and looser grooves, or 3 % beside them, which is what the estimated balls are off by."""
+    nine in ten between ours and looser grooves, or 3 % beside them: balls of the others are off by up to 12 %."""
     default, loose = gmn_pairs()
-    assert default.ratio.size == 59
+    assert default.ratio.size == 228
     assert 0.97 <= np.median(default.ratio) <= 1.05
     assert np.max(np.abs(default.ratio - 1.0)) < 0.12
-    assert np.mean((loose.ratio <= 1.03) & (default.ratio >= 0.97)) >= 0.95
+    assert np.mean((loose.ratio <= 1.03) & (default.ratio >= 0.97)) >= 0.90
+
+
+def test_thin_pairs_are_within_what_two_makers_differ_by() -> None:
+    """719 of GMN and NSK, which differ by 4 % in the median: all points within 15 %. 718 by NTN's ratings: GMN's have
+    less, C0 1.4 times, which is up to a fifth of K."""
+    gmn, nsk, thinner = thin_pairs()
+    assert (gmn.ratio.size, nsk.ratio.size, thinner.ratio.size) == (144, 256, 24)
+    for one in (gmn, nsk):
+        assert np.max(np.abs(one.ratio - 1.0)) < 0.15, one.name
+        assert abs(np.median(one.ratio) - 1.0) < 0.05, one.name
+    assert np.max(np.abs(thinner.ratio - 1.0)) < 0.20
 
 
 @pytest.mark.slow
 def test_the_printed_band_holds_what_their_maker_says() -> None:
     """Axial K with its 90 % band, as `mbs bearing` prints it: 95 % of the points are inside."""
     held = []
-    for row in rows("gmn_pair_rigidity"):
+    every = [row for row in rows("gmn_pair_rigidity") if row["designation"][:3] != "718"]
+    for row in [*every[::9], *rows("nsk_pair_rigidity")[::9]]:
         axial, choices = f"{row['preload_N']} N", {choice.key: None for choice in OPTIONS} | {"law": ["hertz"]}
         asked = {
             **dict.fromkeys(("outer_speed", "direction", "ring_temperatures", "oil", "permittivity", "output", "plot")),
@@ -38,7 +50,7 @@ def test_the_printed_band_holds_what_their_maker_says() -> None:
         band = bands_of(request, points_of(request))["stiffness_axial"]
         theirs = 0.5e6 * float(row["pair_axial_rigidity_N_per_um"])
         held.append(bool(band.low <= theirs <= band.high))
-    assert len(held) == 59
+    assert len(held) == 71
     assert np.mean(held) >= 0.95
 
 

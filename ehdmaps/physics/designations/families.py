@@ -9,8 +9,8 @@ from ehdmaps.errors import InputError, closest, short
 from ehdmaps.physics.designations.reader import BALLS, ROLLERS, TAPERED, plain_name
 
 SERVED = (
-    "deep groove balls 60, 62, 63, 64; angular contact balls 70, 72, 73; cylindrical rollers N, NU, NJ, NUP of 10, 2, "
-    "22, 3, 23, NCF of 30; needles K, NA49; tapered rollers 302, 303, 313, 320, 322, 323"
+    "deep groove balls 618, 619, 160, 60, 62, 63, 64; angular contact balls 718, 719, 70, 72, 73; cylindrical rollers "
+    "N, NU, NJ, NUP of 10, 2, 22, 3, 23, NCF of 30; needles K, NA49; tapered rollers 302, 303, 313, 320, 322, 323"
 )
 """Kinds and series that are served, in words."""
 
@@ -39,10 +39,10 @@ _FAMILIES = tuple(
         (r"(?:NKI[ABS]?|NKS|NKXR?|NK|NXZ?|R?NAO|NAX[IRK]*)[ -]?\d[\dX*/-]*", "needle roller bearing of another type"),
         (r"R?NA[ -]?(?:48|69)[ -]?\d\d", "needle roller bearing of another series"),
         (r"(?:329|330|331|332|318|319|307|308|321|324)[ -]?\d\d", "tapered roller bearing of another series"),
-        (r"(?:618|619|617|160|161|622|623|630|638|639)[ -]?\d\d?", "deep groove ball bearing of another series"),
-        (r"(?:67|68|69)[ -]?\d\d", "deep groove ball bearing of another series"),
+        (r"(?:617|161|622|623|630|638|639)[ -]?\d\d?", "deep groove ball bearing of another series"),
+        (r"67[ -]?\d\d", "deep groove ball bearing of another series"),
         (r"(?:6[0-3]|6[89])\d", "miniature deep groove ball bearing"),
-        (r"(?:HCB|HSS?|XCB|B)?(?:718|719|708|709|7[89])[ -]?\d\d", "angular contact ball bearing of another series"),
+        (r"(?:HCB|HSS?|XCB|B)?(?:708|709)[ -]?\d\d", "angular contact ball bearing of another series"),
         (r"(?:UCP?|UK|YAR|YET|YEL|SA|SB|ES?)[ -]?2\d\d", "insert ball bearing"),
         (r"(?:XSU|XU|XR|RB|RA|CRB[CHT]?|RU)[ -]?\d{3,}", "crossed roller bearing"),
     )
@@ -52,7 +52,7 @@ _FAMILIES = tuple(
 _ALL = (*BALLS, *ROLLERS, TAPERED)
 _LONGEST = 60
 _FILE = re.compile(r"\.[a-z]{2,}")
-_NO_ANGLE = re.compile(r"(?:HC?B?|XCB|B)?7[023] ?\d\d" + _TAIL)
+_NO_ANGLE = re.compile(r"(?:HC?B?|XCB|B)?7(?:1?[89]|[023]) ?\d\d" + _TAIL)
 
 
 def not_served(text: str) -> str:

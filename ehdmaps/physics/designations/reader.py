@@ -37,8 +37,8 @@ _KINDS = (
     _Kind(CYLINDRICAL, r"(NCF)[ -]*(30)[ -]?(\d\d)(?:[ -]?C?V)?"),
     _Kind(NEEDLE, r"(R?NAV?)[ -]?(49)[ -]?(\d\d)"),
     _Kind(NEEDLE_CAGE, r"(K) ?(\d+[X*]\d+[X*]\d+)"),
-    _Kind(DEEP_GROOVE, r"(6[0234])[ -]?(\d\d)"),
-    _Kind(ANGULAR, r"(7[023])[ -]?(\d\d)[ .-]?(A5|AC|C|B|E)"),
+    _Kind(DEEP_GROOVE, r"(618|619|160|6[023489])[ -]?(\d\d)"),
+    _Kind(ANGULAR, r"(718|719|7[02389])[ -]?(\d\d)[ .-]?(A5|AC|C|B|E)"),
     _Kind(TAPERED, r"(302|303|313|320|322|323)[ -]?(\d\d)(?:[ -]?X)?"),
 )
 _PATTERNS = tuple((row.kind, re.compile(rf"(.*?){row.base}(?![0-9])(.*)")) for row in _KINDS)
@@ -122,6 +122,8 @@ def read_designation(text: str) -> Designation | None:
             if parts[2] == "E" and before.strip(" -") not in _OF_SPINDLES:
                 continue
             parts[2] = {"E": "AC", "A5": "AC"}.get(parts[2], parts[2])
+        if kind in BALLS:  # names of makers, and those of ISO
+            parts[0] = {"68": "618", "69": "619", "78": "718", "79": "719"}.get(parts[0], parts[0])
         affixes = (*([first] if first else []), *last)
         named = [one.text for one in affixes if one.effect == CLEARANCE]
         classes = dict.fromkeys("C" + "".join(found.groups("")) for one in named if (found := _CLASS.match(one)))

@@ -8,7 +8,7 @@ knows Dw cos(alpha)/d_m. From them:
   between the eccentric rings, (Z - 1) 2 asin(Dw/d_m) near `FILLING_ARC`, tell which Z it is;
 - angular contact: balls as large as in the deep groove bearing of the same section (60, 62, 63), Z from the rating,
   then Dw from the rating once more;
-- groove radii `INNER_CONFORMITY` and `OUTER_CONFORMITY` of the ball diameter.
+- groove radii `INNER_CONFORMITY` and `OUTER_CONFORMITY` of the ball diameter; `THIN_CONFORMITIES` of 718, 719.
 
 Makers differ, in balls and in ratings; an own rating scales the balls of the table.
 
@@ -16,8 +16,9 @@ References
 ----------
 ISO 15 and ISO 12044: boundary dimensions. ISO 76: static ratings, factors f0 (table 1). Dimensions, ratings
 and f0 of the series 60, 62, 63, ratings of 70 C, 72 C, 72 B, 73 B, and the constant K of axial clearance, from which
-the sum of the groove radii comes: NSK, Rolling Bearings, catalogue E1102e. Series 64: SKF, Rolling bearings (general
-catalogue).
+the sum of the groove radii comes: NSK, Rolling Bearings, catalogue E1102e; there, too, 618, 619 and 160. Ratings of
+719, and of 70, 72 C above 100 mm: NSK, Super Precision Bearings; of 718: NTN, Ball and Roller Bearings, 2202-E. Series
+64: SKF, Rolling bearings (general catalogue).
 """
 
 from __future__ import annotations
@@ -31,6 +32,9 @@ from ehdmaps.physics.designations.families import not_known
 from ehdmaps.physics.designations.reader import BALLS, HC, bore_code, plain_name, read_designation, table
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.solids import SILICON_NITRIDE
+
+MOST_FILLED = 0.93
+"""Most of the pitch circle that balls of angular contact bearings take, Z Dw/(pi d_m): the rest is cage."""
 
 FILLING_ARC = math.radians(189.0)
 """Arc that the balls of a deep groove bearing take while they are put in [rad]; most have 183 to 198 degrees."""
@@ -50,6 +54,16 @@ ERRORS = (
     "{} %, of held rings {} %), number of balls +-{}"
 )
 """What an estimate is good for: measured on bearings whose inner geometry is known, see the tests."""
+
+THIN, THIN_CONFORMITIES = ("718", "719"), (0.52, 0.53)
+"""Angular contact bearings of thin section, and their grooves: those with which ISO 281 rates. Makers' pairs of 719 are
+softer than tighter ones would make them, by 8 % with GMN's own balls, and 11 % (NSK)."""
+
+THIN_ERRORS = (
+    "pitch diameter to 2 %, ball diameter 10 %, groove radii 0.515 to 0.55 of it (K 10 % up, 20 % down), number of "
+    "balls +-3"
+)
+"""The same of angular contact bearings of thin section."""
 
 GROOVES, ANGULAR_GROOVES = (5, 22, 50), (5, 10, 15)
 """Change of K by an outer groove of 0.53 of the ball, of deep groove and of angular contact bearings [%]: radial; axial
@@ -80,9 +94,9 @@ def ball_estimate(designation: str, basic_static_rating: float | None = None) ->
     Parameters
     ----------
     designation : str
-        Deep groove of series 60, 62, 63 (bores of 10 to 100 mm), 64 (20 to 90 mm); angular contact of series 70, 72, 73
-        with the suffix C (15 degrees), AC (25) or B (40), such as "7208B". Blanks and suffixes of seals, cages
-        and accuracy do not matter.
+        Deep groove of series 618, 619, 160, 60, 62, 63 (bores to 300 mm; 68, 69 are 618, 619), 64 (20 to 90 mm);
+        angular contact of series 718, 719, 70, 72, 73 with the suffix C (15 degrees), AC (25) or B (40), such as
+        "7208B". Blanks and suffixes of seals, cages and accuracy do not matter.
     basic_static_rating : float, optional
         C0 [N] of the bearing's own catalogue; else that of the table.
 
@@ -110,8 +124,9 @@ def ball_estimate(designation: str, basic_static_rating: float | None = None) ->
             designation,
             "ball bearing",
             ball_designations(),
-            "60, 62, 63 with bores of 10 to 100 mm, 64 with 20 to 90 mm, such as '6208'; 70, 72, 73 with the suffix C, "
-            "AC or B for the contact angle, such as '7208B'",
+            "618, 619, 160, 60, 62 with bores of 10 to 300 mm, 63 to 280 mm, 64 with 20 to 90 mm, such as '6208'; 718 "
+            "with 25 to 170 mm, 719 to 280 mm, 70, 72, 73 to 200 mm with the suffix C, AC or B for the contact angle, "
+            "such as '7208B'",
         )
     name = plain_name(designation, BALLS)
     pitch = 0.5 * (entry.bore + entry.outside_diameter)
@@ -126,24 +141,27 @@ def ball_estimate(designation: str, basic_static_rating: float | None = None) ->
         if own:
             diameter = _diameter(name, float(rating or 0.0) / balls, pitch, 0.0, section)
     else:
-        deep = ball_estimate("6" + series[1] + code)
+        deep = ball_estimate("6" + series[1:] + code)
         if rating is None:  # as many balls as the next angle has
-            near = ball_estimate(series + code + ("B" if series == "73" else "C"))
+            near = ball_estimate(series + code + _OTHER[suffix][series])
             balls, diameter = near.balls, near.ball_diameter
         else:
             each = _rating(deep.ball_diameter, pitch, angle)
-            balls = max(round(rating / each), 3)
-            diameter = _diameter(name, rating / balls, pitch, angle, section)
-    whose = "own" if own else "SKF's" if series == "64" else "NSK's"
+            balls = max(round(rating / each), 3) + 1
+            diameter = math.inf
+            while balls * diameter > MOST_FILLED * math.pi * pitch:  # fewer, larger ones, which leave room for a cage
+                balls -= 1
+                diameter = _diameter(name, rating / balls, pitch, angle, section)
+    whose = "own" if own else {"64": "SKF's", "718": "NTN's"}.get(series, "NSK's")
     basis = f"inner geometry estimated from catalogue dimensions and {whose} static rating (ISO 76): "
-    errors = ERRORS.format(2, 8, *(ANGULAR_GROOVES if suffix else GROOVES), 2 if suffix else 1)
+    thin = series in THIN
+    errors = THIN_ERRORS if thin else ERRORS.format(2, 8, *(ANGULAR_GROOVES if suffix else GROOVES), 2 if suffix else 1)
     bearing = BallGeometry(
         name,
         diameter,
         pitch,
         balls,
-        INNER_CONFORMITY,
-        OUTER_CONFORMITY,
+        *(THIN_CONFORMITIES if thin else (INNER_CONFORMITY, OUTER_CONFORMITY)),
         angle,
         0.0,
         estimated=basis + errors,
@@ -170,13 +188,14 @@ def ball_boundary(designation: str) -> BallCatalogue | None:
 
 def ball_designations() -> tuple[str, ...]:
     """Designations that `ball_estimate` knows."""
-    return tuple(
+    deep = [f"{series}{bore_code(row[0])}" for series, rows in _DEEP.items() for row in rows]
+    angular = [
         f"{series}{bore_code(row[0])}{suffix}"
-        for series, table in _TABLES.items()
-        for suffix in (("",) if series[0] == "6" else tuple(ANGLES))
-        if (series, suffix) != ("73", "C")
-        for row in table
-    )
+        for series, tables in _ANGULAR.items()
+        for suffix in ANGLES
+        for row in tables.get(_OTHER.get(suffix, {}).get(series, suffix), ())
+    ]
+    return (*deep, *angular)
 
 
 def static_factor(gamma: float) -> float:
@@ -230,9 +249,10 @@ _GROOVE = 0.52
 _LARGE = 25.4
 """Diameter of a ball above which ratings grow less with it [mm]."""
 
-_TABLES = {series: table("balls")[f"series_{series[1]}"] for series in ("60", "62", "63", "64", "70", "72", "73")}
-_COLUMNS = {("70", "C"): 5, ("72", "C"): 5, ("72", "B"): 6, ("73", "B"): 5}
-"""Columns of the ratings of angular contact bearings."""
+_DEEP: dict[str, list[list[float]]] = table("balls")["deep"]
+_ANGULAR: dict[str, dict[str, list[list[float]]]] = table("balls")["angular"]
+_OTHER = {"AC": {"718": "C", "719": "C", "70": "C", "72": "C", "73": "B"}, "B": {"70": "C"}}
+"""Suffixes whose balls those of another angle have, by series: catalogues have their ratings by the same balls."""
 
 
 def _parts(designation: str) -> tuple[str, str, str]:
@@ -244,17 +264,25 @@ def _parts(designation: str) -> tuple[str, str, str]:
     return series, code, "".join(suffix)
 
 
+def _row(rows: list[list[float]], code: str) -> list[float] | None:
+    """Row of a bore."""
+    return next((row for row in rows if bore_code(row[0]) == code), None)
+
+
 def _entry(series: str, code: str, suffix: str) -> BallCatalogue | None:
     """The entry of the table; None where there is none."""
-    if (series, suffix) == ("73", "C"):
+    row = _row(_DEEP.get(f"6{series[1:]}" if suffix else series, []), code)
+    if row is None:
         return None
-    column = 3 if not suffix else _COLUMNS.get((series, suffix))
-    for row in _TABLES.get(series, ()):
-        if bore_code(row[0]) == code:
-            rating = None if column is None else float(row[column])
-            factor = row[4] if not suffix and len(row) > 4 else None
-            return BallCatalogue(row[0] * _MM, row[1] * _MM, row[2] * _MM, rating, factor)
-    return None
+    rating, factor = row[3], row[4] if len(row) > 4 else None
+    if suffix:
+        other = _OTHER.get(suffix, {}).get(series)
+        found = _row(_ANGULAR.get(series, {}).get(other or suffix, []), code)
+        if found is None:
+            return None
+        rating, factor = math.nan if other else found[1], None
+    lengths = (row[0] * _MM, row[1] * _MM, row[2] * _MM)
+    return BallCatalogue(*lengths, None if math.isnan(rating) else float(rating), factor)
 
 
 def _rating(diameter: float, pitch: float, angle: float) -> float:
@@ -280,12 +308,18 @@ def _diameter(name: str, rating: float, pitch: float, angle: float, section: flo
 def _filled(name: str, rating: float, factor: float | None, pitch: float, section: float) -> tuple[int, float]:
     """Number and diameter of the balls of a deep groove bearing."""
     found: list[tuple[float, int, float]] = []
-    for balls in range(5, 25):
+    thin = factor is not None and factor > max(_FACTORS)
+    for balls in range(5, 40):
         if _rating(0.2 * section, pitch, 0.0) < rating / balls < _rating(0.95 * section, pitch, 0.0):
-            diameter = _diameter(name, rating / balls, pitch, 0.0, section)
+            # of thin sections catalogues have more than ISO 76, and ratings by it: Z Dw^2 is C0 over their own factor
+            diameter = (
+                _MM * math.sqrt(rating / (balls * float(factor or 0.0)))
+                if thin
+                else _diameter(name, rating / balls, pitch, 0.0, section)
+            )
             arc = (balls - 1) * 2.0 * math.asin(diameter / pitch)
             doubt = ((arc - FILLING_ARC) / _ARC_ERROR) ** 2
-            if factor is not None:
+            if factor is not None and not thin:
                 doubt += ((static_factor(diameter / pitch) - factor) / _FACTOR_ERROR) ** 2
             found.append((doubt, balls, diameter))
     return min(found)[1:]
