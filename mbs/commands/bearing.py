@@ -28,7 +28,14 @@ _BALLS = re.compile(r"\s*[67]\d{3}(?!\d)")
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Compute all points, describe and write them; status 1 where one is outside of what the laws hold for."""
+    history = [text for given in arguments.load for text in given if text.strip().lower().endswith(HISTORY)]
+    if history:
+        from mbs.commands.one_bearing.history import run_history
+
+        return run_history(arguments, history[0], family_of)
     asked: list[str] = []
+    if not arguments.speed:
+        asked.append('--speed: missing; allowed: of the inner ring, such as "1500 rpm"')
     banded = with_bands(arguments, asked)
     path, warmth = arguments.output, arguments.temperature or []
     ending = Path(path or "").suffix.lower()
@@ -63,6 +70,9 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     every = [point for answer in answers for row in answer.points for point in row]
     return "\n".join(lines), 1 if any(point.problems for point in every) else 0
 
+
+HISTORY = ".csv"
+"""Ending of a history of operating points, in place of a load."""
 
 CIRCUIT = ".cir"
 """Ending of a subcircuit for SPICE."""

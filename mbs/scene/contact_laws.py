@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
@@ -13,7 +12,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.inputs import decimal_points, read_text, separator
+from ehdmaps.inputs import read_columns
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, FilmConditions, OilSupply
@@ -46,7 +45,6 @@ _ALLOWED = (
     "columns 'approach [um]' of both contacts in series, or 'contact approach [um]' of one; "
     "'load [N/mm]'; and 'damping [N s/m^2]' or none"
 )
-_COLUMN = re.compile(r"\s*([a-z ]+?)\s*\[([^\[\]]*)\]\s*")
 
 
 def read_law(path: Path, roller_length: float) -> TableLaw:
@@ -65,17 +63,10 @@ def read_law(path: Path, roller_length: float) -> TableLaw:
         With what is wrong about the file, and where.
     """
     name = f"law table:{path}"
-    text = read_text(path, _LONGEST, "a CSV file of at most 1 MB in UTF-8", name=name)
-    lines = [(i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
-    if not lines:
-        raise InputError(f"{name}: got an empty file; allowed: {_ALLOWED}")
-    between = separator(lines[0][1])
-    names, factors = _columns(name, *lines[0], between)
-    if len(lines) > _MOST + 1:
-        raise InputError(f"{name}: got {len(lines) - 1} points; allowed: 2 to {_MOST}")
-    rows = [_numbers(name, number, line, len(names), between) for number, line in lines[1:]]
-    values = np.array(rows).reshape(-1, len(names)) * factors
-    found: dict[str, FloatArray] = dict(zip(names, values.T, strict=True))
+    columns = read_columns(path, _UNITS, _ALLOWED, _MOST, _LONGEST, name)
+    if "load" not in columns or ("approach" in columns) == ("contact approach" in columns):
+        raise InputError(f"{name}: got the columns {', '.join(columns)}; allowed: {_ALLOWED}")
+    found: dict[str, FloatArray] = {key: np.array(values) for key, values in columns.items()}
     kind: Literal["series", "single"] = "series" if "approach" in found else "single"
     approach = found.get("approach", found.get("contact approach"))
     assert approach is not None
@@ -85,40 +76,6 @@ def read_law(path: Path, roller_length: float) -> TableLaw:
     short = f"table:{path.name}"
     law = TableLaw(short, kind, approach, found["load"], damping, roller_length, "clamp")
     return law.series()
-
-
-def _columns(where: str, number: int, line: str, between: str) -> tuple[list[str], FloatArray]:
-    """Names of the columns, and factors of their units to SI."""
-    names, factors = [], []
-    for text in line.split(between):
-        match = _COLUMN.fullmatch(text)
-        if match is None or match[1] not in _UNITS or match[1] in names:
-            raise InputError(f"{where}, line {number}: got the column {text.strip()!r:.60}; allowed: {_ALLOWED}")
-        try:
-            factors.append(quantity(f"1 {match[2]}", _UNITS[match[1]]))
-        except InputError as error:
-            raise InputError(f"{where}, line {number}, column {match[1]}: {error}") from None
-        names.append(match[1])
-    if "load" not in names or ("approach" in names) == ("contact approach" in names):
-        raise InputError(f"{where}, line {number}: got {line.strip()!r:.80}; allowed: {_ALLOWED}")
-    return names, np.array(factors)
-
-
-_BETWEEN = {",": "commas", ";": "semicolons", "\t": "tabulators"}
-
-
-def _numbers(where: str, number: int, line: str, count: int, between: str) -> list[float]:
-    """The numbers of a line."""
-    try:
-        values = [float(text) for text in decimal_points(line, between).split(between)]
-    except ValueError:
-        values = []
-    if len(values) != count:
-        raise InputError(
-            f"{where}, line {number}: got {line.strip()!r:.60}; allowed: {count} numbers with {_BETWEEN[between]} "
-            "between"
-        )
-    return values
 
 
 _HERTZ, _CONSTANT, _TABLE = "hertz:", "constant:", "table:"

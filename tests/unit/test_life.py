@@ -102,6 +102,76 @@ def test_a_history_counts_turns() -> None:
             life_of_history(shares, lives)
 
 
+@pytest.mark.parametrize(
+    "shares",
+    ["time [h]\n1, 0.2, 600, 50\n5, 0.5, 1200, 25\n2, 0, 0, 9", "share [%]\n1, 0.2, 600, 50\n5, 0.5, 1200, 50"],
+)
+def test_a_bearing_lives_through_a_history(tmp_path, capsys, shares) -> None:
+    """Both halves of the turns wear it as each alone would; a point at rest wears nothing."""
+    path, out = tmp_path / "duty.csv", tmp_path / "lives.csv"
+    path.write_text(f"load [kN], axial [kN], speed [rpm], {shares}\n")
+    assert main(["bearing", "6208", "--load", str(path), "--clearance", "10 um", "-o", str(out)]) == 0
+    said = capsys.readouterr().out
+    lines = [line.split(",") for line in out.read_text().splitlines() if not line.startswith("#")]
+    rows = [dict(zip(lines[0], line, strict=True)) for line in lines[1:]]
+    assert [float(row["share [1]"]) for row in rows][:2] == [0.5, 0.5]
+    assert [float(row["axial [N]"]) for row in rows][:2] == [200.0, 500.0]
+    one, other = (float(row["reference_life [1]"]) for row in rows[:2])
+    both, hours, speed = map(
+        float, re.search(r"L10r of all (\S+) million turns, (\S+) h at a mean of (\S+) rpm", said).groups()
+    )
+    assert both == pytest.approx(2.0 / (1.0 / one + 1.0 / other), rel=1e-3)
+    assert speed == pytest.approx(800.0, rel=1e-6)  # of the time per turn
+    assert hours == pytest.approx(both * 1e6 / 800.0 / 60.0, rel=1e-3)
+    assert (
+        main(
+            [
+                "bearing",
+                "6208",
+                "--load",
+                "1 kN",
+                "--axial",
+                "200 N",
+                "--speed",
+                "600 rpm",
+                "--clearance",
+                "10 um",
+                "--bands",
+                "numerics",
+            ]
+        )
+        == 0
+    )
+    assert f"L10r {one:.4g} million turns" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "wrong"),
+    [
+        ("load [kN], speed [rpm]\n1, 600", [], "got the columns load, speed; allowed: columns 'load [kN]'"),
+        ("load [kN], speed [rpm], share [%]\n1, 600, 60", [], "got shares with a sum of 60 %; allowed: 100 %"),
+        ("load [kN], speed [rpm], share [%]\n-1, 600, 100", [], "point 1: got a load of -1000 N, axial 0 N"),
+        ("load [kN], speed [rpm], share [%]\n1, 0, 100", [], "point 1: got 1; allowed: a share of the revolutions"),
+        ("load [kN], speed [rpm], time [h]\n1, 0, 2", [], "got no revolution"),
+        ("load [kN], speed [rpm], time [h]\n1, 1e9, nan", [], "point 1: got 1e+09 rpm; allowed: 0 to 100000 rpm"),
+        ("load [kN], speed [rpm], share [%]\n1, 600, 100", ["--speed", "1 rpm"], "--speed: got"),
+        ("load [kN], axial [N], speed [rpm], share [%]\n1, 1, 600, 100", ["--axial", "1 N"], "--axial: got '1 N'"),
+        ("load [kN], speed [rpm], share [%]\n1, 600, 100", ["-o", "a.nc"], "-o: "),
+        ("load [kN], speed [rpm], share [%]\n", [], "got no points"),
+    ],
+)  # fmt: skip
+def test_histories_that_are_refused(tmp_path, capsys, text, options, wrong) -> None:
+    path = tmp_path / "duty.csv"
+    path.write_text(text)
+    assert main(["bearing", "6208", "--load", str(path), *options]) == 2
+    assert wrong in capsys.readouterr().err
+
+
+def test_a_bearing_needs_a_speed(capsys) -> None:
+    assert main(["bearing", "6208", "--load", "1 kN"]) == 2
+    assert '--speed: missing; allowed: of the inner ring, such as "1500 rpm"' in capsys.readouterr().err
+
+
 def test_limits_of_viscosity_and_fatigue() -> None:
     """Both formulas of nu_1 meet at 1000 rpm within 2 %; C_u falls with large bearings alone."""
     rpm = math.pi / 30.0

@@ -167,11 +167,23 @@ def points_of(request: Request) -> list[list[Any]]:
     """
     at_speed, asked = cache(request.family.at_speed(request)), request.operating
     loads = [(asked.axial, load * asked.way[0], load * asked.way[1]) for load in asked.loads]
-    return points_over(loads, asked.speeds, lambda load, speed: _point(request, load, speed, at_speed(speed)))
+    return points_over(loads, asked.speeds, lambda load, speed: point_at(request, load, speed, at_speed(speed)))
 
 
-def _point(request: Request, load: tuple[float, float, float], speed: float, at: AtSpeed) -> Any:
-    """The point at a load and a speed, with what is to be said of its films."""
+def point_at(request: Request, load: tuple[float, float, float], speed: float, at: AtSpeed) -> Any:
+    """The point at a load and a speed, with what is to be said of its films.
+
+    Parameters
+    ----------
+    request : Request
+        What is asked.
+    load : (float, float, float)
+        Load on the inner ring along x, y and z [N].
+    speed : float
+        Speed of the inner ring [rad/s].
+    at : AtSpeed
+        The force there.
+    """
     description = request.description
     point = request.family.point(
         at.force,

@@ -166,7 +166,7 @@ def write_csv(kind: Kind, numbers: Sequence[Number], datasets: Sequence[xr.Datas
     numbers : sequence of Number
         Single numbers of a point.
     datasets : sequence of xarray.Dataset
-        Points of a bearing over load and speed, at one or more temperatures.
+        Points of a bearing over load and speed, of one or more temperatures or lines of a history.
     path : str
         The file.
 
@@ -177,8 +177,8 @@ def write_csv(kind: Kind, numbers: Sequence[Number], datasets: Sequence[xr.Datas
     """
     first = datasets[0]
     about = {key: value for key, value in first.attrs.items() if key != "warnings"}
-    if len(datasets) > 1:
-        about["temperature_K"] = "several, see the column"
+    unlike = [key for key, value in about.items() if any(one.attrs.get(key) != value for one in datasets)]
+    about.update(dict.fromkeys(unlike, "several, see the column"))
     head = [
         f"# table {MARK}: one {kind.words} at operating points, SI",
         *(f"# {key}: {value}" for key, value in about.items()),

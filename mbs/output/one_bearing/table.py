@@ -154,12 +154,9 @@ def _electric(description: Description, row: Row) -> list[str]:
 
 def _life(element: str, point: Any, row: Row) -> list[str]:
     """Lines on the life of one point: by its loads, and with its oil."""
-    kind: Elements = "ball" if element == "ball" else "roller"
-    power = {"ball": "3", "roller": "10/3"}[kind]
-    rating, static = point.ratings
     words = (
         f"equivalent load {FORCE.text(row['equivalent_load'])}, L10r {row['reference_life']:.4g} million turns "
-        f"(ISO/TS 16281) with C {FORCE.text(rating)} by its inner geometry (ISO 281); with a maker's C: (C/P)^{power}"
+        f"{rating_words(element, point)}"
     )
     kappa, film = row["viscosity_ratio"], row["film_parameter"]
     if math.isnan(kappa):
@@ -167,13 +164,52 @@ def _life(element: str, point: Any, row: Row) -> list[str]:
     own = "" if math.isnan(film) else f", {ratio_of_films(film):.2g} by the film"
     if kappa < LEAST_RATIO:
         return [words, f"viscosity ratio {kappa:.2g}{own}: below {LEAST_RATIO:g} ISO 281 has no a_ISO"]
-    limit = fatigue_limit(static, point.geometry.pitch_diameter, kind) / row["equivalent_load"]
-    factors = [a_iso(kappa, cleanliness * limit, kind) for cleanliness in (CONTAMINATED, CLEAN)]
+    factors = life_factors(element, point, row)
     return [
         words,
         f"viscosity ratio {kappa:.2g} by ISO 281{own}; with the former L10r is multiplied by a_ISO {factors[0]:.2g} in "
         f"slightly contaminated, {factors[1]:.2g} in filtered oil (e_C {CONTAMINATED:g}, {CLEAN:g})",
     ]
+
+
+_POWERS = {"ball": "3", "roller": "10/3"}
+
+
+def rating_words(element: str, point: Any) -> str:
+    """Rule and rating of a life, and what another rating makes of it.
+
+    Parameters
+    ----------
+    element : str
+        Name of the rolling elements.
+    point : object
+        A point of the bearing.
+    """
+    power = _POWERS["ball" if element == "ball" else "roller"]
+    return (
+        f"(ISO/TS 16281) with C {FORCE.text(point.ratings[0])} by its inner geometry (ISO 281); with a maker's C: "
+        f"(C/P)^{power}"
+    )
+
+
+def life_factors(element: str, point: Any, row: Row) -> list[float]:
+    """Factors a_ISO in slightly contaminated and in filtered oil; NaN where ISO 281 has none.
+
+    Parameters
+    ----------
+    element : str
+        Name of the rolling elements.
+    point : object
+        A point of the bearing.
+    row : mapping
+        Numbers of the point.
+    """
+    kind: Elements = "ball" if element == "ball" else "roller"
+    kappa = row["viscosity_ratio"]
+    if math.isnan(kappa):
+        return [math.nan, math.nan]
+    limit = fatigue_limit(point.ratings[1], point.geometry.pitch_diameter, kind) / row["equivalent_load"]
+    return [a_iso(kappa, cleanliness * limit, kind) for cleanliness in (CONTAMINATED, CLEAN)]
 
 
 def _loaded(kind: Kind, point: Any) -> list[str]:
