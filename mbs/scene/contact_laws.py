@@ -12,7 +12,6 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.inputs import read_columns
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, FilmConditions, OilSupply
@@ -62,6 +61,8 @@ def read_law(path: Path, roller_length: float) -> TableLaw:
     InputError
         With what is wrong about the file, and where.
     """
+    from mbs.scene.columns import read_columns  # laws by points alone need it
+
     name = f"law table:{path}"
     columns = read_columns(path, _UNITS, _ALLOWED, _MOST, _LONGEST, name)
     if "load" not in columns or ("approach" in columns) == ("contact approach" in columns):

@@ -420,7 +420,7 @@ MACHINES = ("mbs.transient", "mbs.linearised", "mbs.flexible", "mbs.spectral", "
 BUDGETS = (
     ("from mbs import Bearing", 20, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps", "numba", "pint")),
     ("from mbs.bearings import bearing_force", 50, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps.law")),
-    (BEARING, 115, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps.law", "ehdmaps.maps.emap")),
+    (BEARING, 116, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps.law", "ehdmaps.maps.emap")),
     (STATICS, 130, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs.job", "ehdmaps.maps.law", "ehdmaps.maps.emap")),
     (FILMS_OF_TABLE, 100, (SOLVING[1], "numba", "matplotlib", "xarray", "pandas", "mbs")),
     ("from mbs.analyses import campbell, runup", 235, ("numba",)),

@@ -1,4 +1,4 @@
-"""What stands before and behind the plain designation of a bearing: seals, cages, accuracy, materials, clearance.
+"""Prefixes and suffixes of the plain designation of a bearing: seals, cages, accuracy, materials, clearance.
 
 Meanings are rows of a file. Suffixes may stand behind each other without a blank; one that is in no row is read where a
 blank, a hyphen, a stroke or a dot sets it apart, and told.
@@ -13,7 +13,7 @@ from importlib import resources
 from typing import NamedTuple
 
 HYBRID, CLEARANCE, MOUNTING, REFUSED, UNKNOWN = "hybrid", "clearance", "mounting", "refused", "unknown"
-"""What a prefix or suffix does beside having a meaning; empty where forces do not know it."""
+"""Effects of a prefix or suffix beside having a meaning; empty where forces do not know it."""
 
 
 class Affix(NamedTuple):
@@ -22,11 +22,11 @@ class Affix(NamedTuple):
     Attributes
     ----------
     text : str
-        As it was typed, in capitals.
+        The affix as it was typed, in capitals.
     meaning : str
-        What it means.
+        Meaning of the affix.
     effect : str
-        What it does: see `HYBRID`.
+        Effect of the affix, see `HYBRID`.
     """
 
     text: str
@@ -62,7 +62,7 @@ def prefix(text: str, kind: str) -> Affix | None:
     Parameters
     ----------
     text : str
-        What stands before the designation, in capitals.
+        Part before the designation, in capitals.
     kind : str
         Kind of the bearing.
 
@@ -86,7 +86,7 @@ def suffixes(text: str, kind: str) -> tuple[Affix, ...] | None:
     Parameters
     ----------
     text : str
-        What stands behind the designation, in capitals.
+        Part behind the designation, in capitals.
     kind : str
         Kind of the bearing.
 

@@ -82,12 +82,12 @@ class Designation(NamedTuple):
 
     @property
     def hybrid(self) -> bool:
-        """Whether its rolling elements are of silicon nitride."""
+        """True where its rolling elements are of silicon nitride."""
         return any(one.effect == HYBRID for one in self.affixes)
 
     @property
     def words(self) -> str:
-        """What each part means."""
+        """Meaning of each part."""
         return "; ".join((f"{''.join(self.parts)}: {self.kind}", *(one.words for one in self.affixes)))
 
 

@@ -12,13 +12,13 @@ from functools import cache
 from typing import Any, NamedTuple
 
 from ehdmaps.errors import AnalysisError, InputError
-from ehdmaps.inputs import read_columns
 from ehdmaps.outputs import TABLE, Output, output_problems
 from ehdmaps.units import RPM
 from mbs.commands.one_bearing.family import Family, Request
 from mbs.commands.one_bearing.request import point_at, read_request
 from mbs.commands.one_bearing.shared import LOADS, SPEEDS
 from mbs.output.one_bearing.history import history_lines, write_history
+from mbs.scene.columns import read_columns
 from mbs.scene.fields import FORCE
 
 FORM = "columns 'load [kN]', 'speed [rpm]', perhaps 'axial [kN]', and 'share [%]' of the revolutions or 'time [h]'"
