@@ -68,7 +68,7 @@ class ReferenceLife(NamedTuple):
 def ball_reference_life(
     geometry: BallGeometry, loads: FloatArray, dynamic_rating: float, *, inner_turns: bool = True
 ) -> ReferenceLife:
-    """Life of a single row of balls.
+    """Life of a ball bearing.
 
     Parameters
     ----------
@@ -85,14 +85,17 @@ def ball_reference_life(
     # ratio of the ratings of both raceways: curvatures across and along rolling
     both = 1.044 * ((1.0 - geometry.gamma) / (1.0 + geometry.gamma)) ** 1.72
     both *= (inner / outer * (2.0 * outer - 1.0) / (2.0 * inner - 1.0)) ** 0.41
-    ball = dynamic_rating / (geometry.balls * math.cos(geometry.contact_angle) ** 0.7)
+    rows = len(geometry.rows)
+    ball = dynamic_rating / (geometry.balls * (geometry.ball_rows * math.cos(geometry.contact_angle)) ** 0.7)
     capacities = (
         ball / 0.407 * (1.0 + both ** (10.0 / 3.0)) ** 0.3,
         ball / 0.389 * (1.0 + both ** (-10.0 / 3.0)) ** 0.3,
     )
     powers = (3.0, 10.0 / 3.0) if inner_turns else (10.0 / 3.0, 3.0)
-    means = [float(np.mean(side**power)) ** (1.0 / power) for side, power in zip(loads, powers, strict=True)]
-    total = sum((mean / rating) ** (10.0 / 3.0) for mean, rating in zip(means, capacities, strict=True))
+    total = 0.0
+    for side, power, rating in zip(loads, powers, capacities, strict=True):
+        means = np.mean(side.reshape(rows, -1) ** power, axis=1) ** (1.0 / power)  # of each row
+        total += float(np.sum((means / rating) ** (10.0 / 3.0)))
     return _with_life(dynamic_rating, total, 0.9, 3.0)
 
 

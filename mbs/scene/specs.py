@@ -319,7 +319,7 @@ class BallSpec(LocatingSpec):
     @property
     def elements(self) -> str:
         """Its rolling elements in words."""
-        return f"{self.geometry.balls} balls"
+        return f"{self.geometry.rolling_elements} balls"
 
 
 @dataclass(frozen=True)

@@ -79,6 +79,7 @@ slices = 3
 """
 NUP, NJ = (NU.replace("NU308", name) for name in ("NUP308", "NJ308"))
 BALL, ANGULAR, TAPERED = (f'bearing = "{name}"' for name in ("6208", "7208B", "32208"))
+ROWS, FOUR_POINT = 'bearing = "3208"', 'bearing = "QJ208"'
 TABLE = """
 kind = "table"
 speeds = ["0 rpm", "3000 rpm"]
@@ -141,6 +142,9 @@ KINDS = (
     Machine("needle", alike(NEEDLE), axial=False),
     Machine("deep groove", alike(BALL)),
     Machine("hybrid, thin section", (("left", 'bearing = "6208 HC"'), ("right", 'bearing = "61912"'))),
+    Machine(
+        "two rows, four-point", (("left", 'bearing = "3208"'), ("right", 'bearing = "QJ208"')), heavy=(1.0, -0.3, 0.0)
+    ),
     Machine("angular contact", preloaded(ANGULAR), heavy=(1.0, -0.3, 0.0)),
     Machine("tapered", preloaded(TAPERED), heavy=(0.25, -1.0, 0.0)),
     Machine("ribbed NUP", alike(NUP)),

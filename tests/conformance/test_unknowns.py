@@ -154,7 +154,7 @@ def test_what_is_held_open_has_a_row_for_each_part(machine):
     assert {"temperature", "pressure_viscosity", "cage_angle"} <= groups
     for entry in scene.of_all_kinds:
         mine = {one.name for one in found if one.name.endswith(f" of {entry.name}")}
-        tapered, rollers = entry.geometry.name.startswith("32"), hasattr(entry.geometry, "roller_diameter")
+        tapered, rollers = entry.geometry.clearance is None, hasattr(entry.geometry, "roller_diameter")
         assert (f"clearance of {entry.name}" in mine) != tapered
         assert (f"profile of {entry.name}" in mine) == rollers
         words = re.sub(r" \([^)]*\)", "", entry.geometry.estimated or "")  # effects of parts are no parts

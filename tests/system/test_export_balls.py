@@ -55,7 +55,7 @@ def films(geometry):
 def exported(tmp_path_factory):
     """Bearing, laws over the speed and compiled kernel: dry deep groove, and angular contact with films."""
     folder, found = tmp_path_factory.mktemp("balls"), {}
-    for name, filmed in (("6208", False), ("7208B", True)):
+    for name, filmed in (("6208", False), ("7208B", True), ("3208", True)):
         geometry = ball_estimate(name)
         ends = (geometry.entrainment_speed(rpm * RPM) for rpm in (1000.0, 6000.0))
         dry = dry_law(geometry, damping_time=DAMPER)
@@ -77,7 +77,7 @@ def assert_same(found, wanted, arm):
 
 
 @pytest.mark.parametrize("mirrored", [False, True])
-@pytest.mark.parametrize("name", ["6208", "7208B"])
+@pytest.mark.parametrize("name", ["6208", "7208B", "3208"])
 def test_kernel_is_that_of_python(exported, name, mirrored):
     """At random poses and velocities, with clearance and preload, at rest and fast, with rings against each other."""
     nominal, laws, kernel = exported[name]

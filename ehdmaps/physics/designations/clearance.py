@@ -27,8 +27,11 @@ from ehdmaps.physics.designations.reader import (
     BALLS,
     CYLINDRICAL,
     DEEP_GROOVE,
+    DOUBLE_ROW,
+    FOUR_POINT,
     NEEDLE,
     TAPERED,
+    Designation,
     read_designation,
     table,
 )
@@ -53,6 +56,9 @@ _SHAFTS = (
     (80, 30, 49, 10, 29, 13),
     (120, 36, 58, 12, 34, 15),
 )
+_AXIAL = {DOUBLE_ROW: ("double_row", 20e-6), FOUR_POINT: ("four_point", 14e-6)}
+"""Tables of axial clearances, and the most that fits and warmth take of them [m]."""
+
 _MOUNTED = {
     ANGULAR: "the play of angular contact bearings is set when they are mounted",
     TAPERED: "the play of tapered bearings is set when they are mounted",
@@ -82,6 +88,8 @@ class ClearanceRange(NamedTuple):
         Whether the class stands in the designation.
     taken : {"mounted", "delivered", "stated"}
         What the bearing has of it, see `MOUNTED`.
+    axial : str
+        Whose table has it, for a clearance that is axial; empty for a radial one.
     """
 
     name: str
@@ -90,6 +98,7 @@ class ClearanceRange(NamedTuple):
     fit: float
     typed: bool = False
     taken: str = MOUNTED
+    axial: str = ""
 
     @property
     def reach(self) -> tuple[float, float]:
@@ -111,6 +120,8 @@ class ClearanceRange(NamedTuple):
     @property
     def source(self) -> str:
         """Name of what gives the range."""
+        if self.axial:
+            return f"{self.name} of {self.axial}, axial"
         return f"{self.name} of ISO {'5753-1' if self.name in CLASSES else '286-2'}"
 
     @property
@@ -122,7 +133,8 @@ class ClearanceRange(NamedTuple):
     @property
     def words(self) -> str:
         """Clearance that was taken, and the range beside it."""
-        delivered = f"{_reach(self.least, self.largest)} by ISO 5753-1, before mounting"
+        by = f"{self.axial}'s table, axial" if self.axial else "ISO 5753-1"
+        delivered = f"{_reach(self.least, self.largest)} by {by}, before mounting"
         if self.taken == STATED:
             return f"clearance as stated: {self.name} of the designation would be {delivered}"
         return f"clearance {self.why}: {1e6 * self.clearance:.4g} um, the middle of {_reach(*self.reach)}"
@@ -250,6 +262,64 @@ def shaft_range(kind: str, raceway: float) -> ClearanceRange | None:
     return None
 
 
+def axial_range(found: Designation, bore: float) -> ClearanceRange | None:
+    """Axial clearance of a bearing of two rows by its designation; None for bores that have no classes.
+
+    A radial fit of the size that deep groove bearings are given takes the cotangent of the contact angle of it.
+
+    Parameters
+    ----------
+    found : Designation
+        The parts of its designation.
+    bore : float
+        Bore [m].
+
+    Raises
+    ------
+    InputError
+        For a class that its table does not have.
+    """
+    key, taken = _AXIAL[found.kind]
+    name = found.clearance or NORMAL
+    for largest_bore, *limits in table("clearance")[key]:
+        if bore <= 1e-3 * largest_bore * (1.0 + 1e-9):
+            names = CLASSES[: len(limits) // 2]
+            if name not in names:
+                raise InputError(
+                    f"bearing designation: got {short(found.text)}; allowed: one of the classes {', '.join(names)}; "
+                    f"state the clearance and leave {name} out"
+                )
+            place = 2 * names.index(name)
+            least, most = limits[place] / 1e6, limits[place + 1] / 1e6
+            return ClearanceRange(name, least, most, taken, bool(found.clearance), axial="SKF")
+    return None
+
+
+def refuse_affixes(designation: str, found: Designation) -> None:
+    """Refuse what stands before or behind a designation, changes forces and is not served.
+
+    Parameters
+    ----------
+    designation : str
+        Designation as it was typed.
+    found : Designation
+        Its parts.
+
+    Raises
+    ------
+    InputError
+        For such a part.
+    """
+    refused = [one.words for one in found.affixes if one.effect == REFUSED]
+    if found.hybrid and found.kind not in BALLS:
+        refused.append("rollers of silicon nitride: not yet")
+    if refused:
+        raise InputError(
+            f"bearing designation: got {short(designation)}, {'; '.join(refused)}; allowed: without it, for the "
+            "bearing that has none of it"
+        )
+
+
 def delivered(designation: str, bore: float | None, raceway: float = 0.0) -> ClearanceRange | None:
     """Clearance of a bearing by its designation; None for kinds whose clearance is set when they are mounted.
 
@@ -277,11 +347,7 @@ def delivered(designation: str, bore: float | None, raceway: float = 0.0) -> Cle
     if found is None:
         return None
     where, name = f"bearing designation: got {short(designation)}", found.clearance
-    refused = [one.words for one in found.affixes if one.effect == REFUSED]
-    if found.hybrid and found.kind not in BALLS:
-        refused.append("rollers of silicon nitride: not yet")
-    if refused:
-        raise InputError(f"{where}, {'; '.join(refused)}; allowed: without it, for the bearing that has none of it")
+    refuse_affixes(designation, found)
     if not name:
         return shaft_range(found.kind, raceway) if bore is None else class_range(found.kind, bore)
     why = _MOUNTED.get(found.kind, "" if bore is not None else _NO_RING)

@@ -9,8 +9,9 @@ from ehdmaps.errors import InputError, closest, short
 from ehdmaps.physics.designations.reader import BALLS, ROLLERS, TAPERED, plain_name
 
 SERVED = (
-    "deep groove balls 618, 619, 160, 60, 62, 63, 64; angular contact balls 718, 719, 70, 72, 73; cylindrical rollers "
-    "N, NU, NJ, NUP of 10, 2, 22, 3, 23, NCF of 30; needles K, NA49; tapered rollers 302, 303, 313, 320, 322, 323"
+    "deep groove balls 618, 619, 160, 60, 62, 63, 64; angular contact balls 718, 719, 70, 72, 73, two rows 32, 33, "
+    "four-point QJ; cylindrical rollers N, NU, NJ, NUP of 10, 2, 22, 3, 23, NCF of 30; needles K, NA49; tapered "
+    "rollers 302, 303, 313, 320, 322, 323"
 )
 """Kinds and series that are served, in words."""
 
@@ -29,9 +30,9 @@ _FAMILIES = tuple(
         (r"(?:811|812|893|894|874)[ -]?\d\d", "cylindrical roller thrust bearing"),
         (r"(?:AXK|AXW|AS|LS|AXZ) ?\d{4,}", "needle roller thrust bearing"),
         (r"(?:2344|2347|7602|7603|BSA|BSB|BSD|ZKLN|ZKLF|BTW|BTM)[ -]?\d*", "angular contact thrust ball bearing"),
-        (r"(?:32|33|52|53|30|38|39)[ -]?\d\d", "double row angular contact ball bearing"),
+        (r"(?:30|38|39)[ -]?\d\d", "double row angular contact ball bearing of another series"),
         (r"(?:42|43)[ -]?\d\d", "double row deep groove ball bearing"),
-        (r"QJF?[ -]?\d{3,4}", "four-point contact ball bearing"),
+        (r"QJF[ -]?\d{3,4}", "four-point contact ball bearing"),
         (r"(?:NNU?|NNTR?)[ -]?\d{4,5}", "double row cylindrical roller bearing"),
         (r"(?:NNCF?|NNCL|NNF|NCF|NCL|NJG|NJF|SL)[ -]?\d{4,6}", "full complement cylindrical roller bearing"),
         (r"(?:RNU|RN|NF|NP|NH|NUB|NJP|NUJ|NFP)[ -]?\d{3,4}", "cylindrical roller bearing of another type"),

@@ -14,15 +14,18 @@ from typing import Any, NamedTuple
 
 from ehdmaps.physics.designations.affixes import CLEARANCE, HYBRID, Affix, prefix, suffixes
 
-CYLINDRICAL, NEEDLE, NEEDLE_CAGE, DEEP_GROOVE, ANGULAR, TAPERED = (
+CYLINDRICAL, NEEDLE, NEEDLE_CAGE, DEEP_GROOVE, ANGULAR, TAPERED, DOUBLE_ROW, FOUR_POINT = (
     "cylindrical roller bearing",
     "needle roller bearing",
     "needle cage",
     "deep groove ball bearing",
     "angular contact ball bearing",
     "tapered roller bearing",
+    "double row angular contact ball bearing",
+    "four-point contact ball bearing",
 )
-BALLS, ROLLERS, NEEDLES = (DEEP_GROOVE, ANGULAR), (CYLINDRICAL, NEEDLE, NEEDLE_CAGE), (NEEDLE, NEEDLE_CAGE)
+OF_ROWS = (DOUBLE_ROW, FOUR_POINT)
+BALLS, ROLLERS, NEEDLES = (DEEP_GROOVE, ANGULAR, *OF_ROWS), (CYLINDRICAL, NEEDLE, NEEDLE_CAGE), (NEEDLE, NEEDLE_CAGE)
 
 
 class _Kind(NamedTuple):
@@ -39,10 +42,15 @@ _KINDS = (
     _Kind(NEEDLE_CAGE, r"(K) ?(\d+[X*]\d+[X*]\d+)"),
     _Kind(DEEP_GROOVE, r"(618|619|160|6[023489])[ -]?(\d\d)"),
     _Kind(ANGULAR, r"(718|719|7[02389])[ -]?(\d\d)[ .-]?(A5|AC|C|B|E)"),
+    _Kind(DOUBLE_ROW, r"(32|33|52|53)[ -]?(\d\d)[ -]?(A|B)?"),
+    _Kind(FOUR_POINT, r"(QJ)[ -]?(10|2|3)[ -]?(\d\d)"),
     _Kind(TAPERED, r"(302|303|313|320|322|323)[ -]?(\d\d)(?:[ -]?X)?"),
 )
 _PATTERNS = tuple((row.kind, re.compile(rf"(.*?){row.base}(?![0-9])(.*)")) for row in _KINDS)
 _CLASS = re.compile(r"C([2-5NM])|P[2-6]([2-5])")
+_ISO_NAMES = {"68": "618", "69": "619", "78": "718", "79": "719", "52": "32", "53": "33"}
+"""Series of makers, and their names by ISO."""
+
 _OF_SPINDLES = ("B", "HCB", "XCB")
 """Prefixes of a maker whose suffix E is an angle of 25 degrees."""
 
@@ -71,8 +79,7 @@ class Designation(NamedTuple):
     @property
     def name(self) -> str:
         """Designation without blanks and suffixes, such as "NU210" or "K40x48x20"; HC behind it for hybrid bearings."""
-        name = "".join(self.parts)
-        name = re.sub("[X*]", "x", name) if self.kind == NEEDLE_CAGE else name
+        name = re.sub("[X*]", "x", self._plain) if self.kind == NEEDLE_CAGE else self._plain
         return name + HC if self.hybrid else name
 
     @property
@@ -88,7 +95,12 @@ class Designation(NamedTuple):
     @property
     def words(self) -> str:
         """Meaning of each part."""
-        return "; ".join((f"{''.join(self.parts)}: {self.kind}", *(one.words for one in self.affixes)))
+        return "; ".join((f"{self._plain}: {self.kind}", *(one.words for one in self.affixes)))
+
+    @property
+    def _plain(self) -> str:
+        """Its parts, as far as it has them."""
+        return "".join(part or "" for part in self.parts)
 
 
 def read_designation(text: str) -> Designation | None:
@@ -123,7 +135,7 @@ def read_designation(text: str) -> Designation | None:
                 continue
             parts[2] = {"E": "AC", "A5": "AC"}.get(parts[2], parts[2])
         if kind in BALLS:  # names of makers, and those of ISO
-            parts[0] = {"68": "618", "69": "619", "78": "718", "79": "719"}.get(parts[0], parts[0])
+            parts[0] = _ISO_NAMES.get(parts[0], parts[0])
         affixes = (*([first] if first else []), *last)
         named = [one.text for one in affixes if one.effect == CLEARANCE]
         classes = dict.fromkeys("C" + "".join(found.groups("")) for one in named if (found := _CLASS.match(one)))

@@ -23,13 +23,14 @@ the sum of the groove radii comes: NSK, Rolling Bearings, catalogue E1102e; ther
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from typing import NamedTuple
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.designations.clearance import delivered
 from ehdmaps.physics.designations.families import not_known
-from ehdmaps.physics.designations.reader import BALLS, HC, bore_code, plain_name, read_designation, table
+from ehdmaps.physics.designations.reader import BALLS, HC, OF_ROWS, bore_code, plain_name, read_designation, table
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.solids import SILICON_NITRIDE
 
@@ -117,6 +118,13 @@ def ball_estimate(designation: str, basic_static_rating: float | None = None) ->
     >>> bearing.balls, round(1e3 * bearing.ball_diameter, 2), round(1e3 * bearing.pitch_diameter, 1)
     (9, 11.91, 60.0)
     """
+    parts = read_designation(designation)
+    if parts is not None and parts.kind in OF_ROWS:
+        from ehdmaps.physics.point.row_catalogue import row_estimate  # which stands on this
+
+        bearing = row_estimate(designation, parts)
+        material = SILICON_NITRIDE if parts.hybrid else None
+        return dataclasses.replace(bearing, ball_material=material).typed(designation)
     series, code, suffix = _parts(designation)
     entry = _entry(series, code, suffix)
     if entry is None:
@@ -139,19 +147,19 @@ def ball_estimate(designation: str, basic_static_rating: float | None = None) ->
     if not suffix:
         balls, diameter = _filled(name, float(entry.basic_static_rating or 0.0), entry.factor, pitch, section)
         if own:
-            diameter = _diameter(name, float(rating or 0.0) / balls, pitch, 0.0, section)
+            diameter = ball_diameter(name, float(rating or 0.0) / balls, pitch, 0.0, section)
     else:
         deep = ball_estimate("6" + series[1:] + code)
         if rating is None:  # as many balls as the next angle has
             near = ball_estimate(series + code + _OTHER[suffix][series])
             balls, diameter = near.balls, near.ball_diameter
         else:
-            each = _rating(deep.ball_diameter, pitch, angle)
+            each = rating_of_ball(deep.ball_diameter, pitch, angle)
             balls = max(round(rating / each), 3) + 1
             diameter = math.inf
             while balls * diameter > MOST_FILLED * math.pi * pitch:  # fewer, larger ones, which leave room for a cage
                 balls -= 1
-                diameter = _diameter(name, rating / balls, pitch, angle, section)
+                diameter = ball_diameter(name, rating / balls, pitch, angle, section)
     whose = "own" if own else {"64": "SKF's", "718": "NTN's"}.get(series, "NSK's")
     basis = f"inner geometry estimated from catalogue dimensions and {whose} static rating (ISO 76): "
     thin = series in THIN
@@ -213,12 +221,13 @@ def static_factor(gamma: float) -> float:
 
 def ball_static_rating(geometry: BallGeometry) -> float:
     """Static rating C0 of ISO 76 [N]; of balls of silicon nitride `HYBRID_RATING` of it."""
-    steel = geometry.balls * _rating(geometry.ball_diameter, geometry.pitch_diameter, geometry.contact_angle)
+    steel = geometry.balls * rating_of_ball(geometry.ball_diameter, geometry.pitch_diameter, geometry.contact_angle)
+    steel *= geometry.ball_rows
     return HYBRID_RATING * steel if geometry.ball_material == SILICON_NITRIDE else steel
 
 
 def ball_dynamic_rating(geometry: BallGeometry, quality: float = 1.3) -> float:
-    """Dynamic rating C of ISO 281 of a row of balls by its inner geometry [N].
+    """Dynamic rating C of ISO 281 by the inner geometry [N].
 
     Parameters
     ----------
@@ -240,7 +249,9 @@ def ball_dynamic_rating(geometry: BallGeometry, quality: float = 1.3) -> float:
     factor *= gamma**0.3 * (1.0 - gamma) ** 1.39 / (1.0 + gamma) ** (1.0 / 3.0)
     diameter = geometry.ball_diameter / _MM
     size = diameter**1.8 if diameter <= _LARGE else 3.647 * diameter**1.4
-    return float(quality * factor * math.cos(angle) ** 0.7 * geometry.balls ** (2.0 / 3.0) * size)
+    return float(
+        quality * geometry.ball_rows**0.7 * factor * math.cos(angle) ** 0.7 * geometry.balls ** (2.0 / 3.0) * size
+    )
 
 
 _GROOVE = 0.52
@@ -258,7 +269,7 @@ _OTHER = {"AC": {"718": "C", "719": "C", "70": "C", "72": "C", "73": "B"}, "B": 
 def _parts(designation: str) -> tuple[str, str, str]:
     """Series, bore code and suffix of the contact angle; empty where it is no designation of a ball bearing."""
     found = read_designation(designation)
-    if found is None or found.kind not in BALLS:
+    if found is None or found.kind not in BALLS or found.kind in OF_ROWS:
         return "", "", ""
     series, code, *suffix = found.parts
     return series, code, "".join(suffix)
@@ -285,23 +296,23 @@ def _entry(series: str, code: str, suffix: str) -> BallCatalogue | None:
     return BallCatalogue(*lengths, None if math.isnan(rating) else float(rating), factor)
 
 
-def _rating(diameter: float, pitch: float, angle: float) -> float:
+def rating_of_ball(diameter: float, pitch: float, angle: float) -> float:
     """Static rating of a ball [N]."""
     cosine = math.cos(angle)
     return static_factor(diameter * cosine / pitch) * (diameter / _MM) ** 2 * cosine
 
 
-def _diameter(name: str, rating: float, pitch: float, angle: float, section: float) -> float:
+def ball_diameter(name: str, rating: float, pitch: float, angle: float, section: float) -> float:
     """Diameter of the balls by the rating of one of them [m]."""
     low, high = 0.2 * section, 0.95 * section
-    if not _rating(low, pitch, angle) < rating < _rating(high, pitch, angle):
+    if not rating_of_ball(low, pitch, angle) < rating < rating_of_ball(high, pitch, angle):
         raise InputError(
             f"ball bearing estimate of {name}: no balls fit its static rating between {low / _MM:.3g} and "
             f"{high / _MM:.3g} mm; allowed: C0, not C, in N"
         )
     for _ in range(60):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if _rating(middle, pitch, angle) < rating else (low, middle)
+        low, high = (middle, high) if rating_of_ball(middle, pitch, angle) < rating else (low, middle)
     return 0.5 * (low + high)
 
 
@@ -310,12 +321,12 @@ def _filled(name: str, rating: float, factor: float | None, pitch: float, sectio
     found: list[tuple[float, int, float]] = []
     thin = factor is not None and factor > max(_FACTORS)
     for balls in range(5, 40):
-        if _rating(0.2 * section, pitch, 0.0) < rating / balls < _rating(0.95 * section, pitch, 0.0):
+        if rating_of_ball(0.2 * section, pitch, 0.0) < rating / balls < rating_of_ball(0.95 * section, pitch, 0.0):
             # of thin sections catalogues have more than ISO 76, and ratings by it: Z Dw^2 is C0 over their own factor
             diameter = (
                 _MM * math.sqrt(rating / (balls * float(factor or 0.0)))
                 if thin
-                else _diameter(name, rating / balls, pitch, 0.0, section)
+                else ball_diameter(name, rating / balls, pitch, 0.0, section)
             )
             arc = (balls - 1) * 2.0 * math.asin(diameter / pitch)
             doubt = ((arc - FILLING_ARC) / _ARC_ERROR) ** 2

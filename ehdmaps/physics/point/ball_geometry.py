@@ -20,7 +20,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 from ehdmaps.errors import InputError, label_problem
 from ehdmaps.physics.designations.clearance import ClearanceRange, Named
@@ -34,9 +34,30 @@ LARGEST_ANGLE = math.radians(60.0)
 _CONFORMITIES = (0.5, 1.0)
 
 
+class BallRow(NamedTuple):
+    """A row of balls.
+
+    Attributes
+    ----------
+    way : float
+        1: it carries an axial force on the inner ring in +x; -1: one in -x. Alike for a contact angle of zero.
+    place : float
+        Place along the axis [m].
+    shift : float
+        By how much its inner groove stands beside where balls just touch [m]; > 0 presses them.
+    """
+
+    way: float = 1.0
+    place: float = 0.0
+    shift: float = 0.0
+
+
+ONE_ROW = (BallRow(),)
+
+
 @dataclass(frozen=True)
 class BallGeometry(Named):
-    """A deep groove or angular contact ball bearing.
+    """A deep groove or angular contact ball bearing, of one row or several.
 
     Attributes
     ----------
@@ -45,7 +66,7 @@ class BallGeometry(Named):
     ball_diameter, pitch_diameter : float
         Dw and d_m [m], d_m the diameter on which the centres of the balls lie.
     balls : int
-        Number Z of balls.
+        Number Z of balls of a row.
     inner_conformity, outer_conformity : float
         Radius of each groove over the ball diameter, f, 0.5 < f <= 1.
     contact_angle : float
@@ -53,7 +74,7 @@ class BallGeometry(Named):
         is carried; negative: one in -x. At most 60 degrees either way.
     clearance : float
         Diametral clearance s [m], < 0 for preload. Of angular contact bearings it is what fits and temperature add to
-        the nominal geometry.
+        the nominal geometry; of rows that carry either way it is axial, see `axial_play`.
     label : str or None
         Free text shown instead of the name; no part of what makes bearings equal.
     estimated : str or None
@@ -66,6 +87,8 @@ class BallGeometry(Named):
         What each part of the designation means; no part of what makes bearings equal, nor of records.
     ball_material, ring_material : Material or None
         Materials of balls and of both rings; None: those that a question states, steel by default.
+    rows : tuple of BallRow
+        Its rows, each of `balls` balls; those of double row bearings and of matched sets have places of their own.
 
     Raises
     ------
@@ -95,6 +118,7 @@ class BallGeometry(Named):
     spelled: str | None = field(default=None, compare=False)
     ball_material: Material | None = None
     ring_material: Material | None = None
+    rows: tuple[BallRow, ...] = ONE_ROW
 
     def __post_init__(self) -> None:
         problems = _problems(self)
@@ -103,8 +127,8 @@ class BallGeometry(Named):
 
     @property
     def rolling_elements(self) -> int:
-        """Number of its balls."""
-        return self.balls
+        """Number of its balls, of all rows."""
+        return self.balls * len(self.rows)
 
     def known(self, values: Mapping[str, Any], estimated: str) -> BallGeometry:
         """The same bearing with parts that are known.
@@ -121,12 +145,38 @@ class BallGeometry(Named):
     def record(self) -> dict[str, float | str]:
         """See `Named.record`; materials in words."""
         found = super().record()
+        del found["rows"]
+        if len(self.rows) > 1:
+            found["rows"] = self.row_words
         for part in ("ball", "ring"):
             material: Material | None = getattr(self, f"{part}_material")
             if material is not None:
                 modulus, ratio = 1e-9 * material.youngs_modulus, material.poisson_ratio
                 found[f"{part}_material"] = f"{modulus:g} GPa, {ratio:g}, {material.density:g} kg/m3"
         return found
+
+    @property
+    def others(self) -> tuple[int, ...]:
+        """How many rows further the other contacts of the balls of each row are; 0 where balls have two contacts."""
+        return (1, -1) if len(self.rows) == 2 and self.ball_rows == 1 else (0,) * len(self.rows)
+
+    @property
+    def ball_rows(self) -> int:
+        """Number of rows of balls: those of a four-point contact bearing are at one place, and one row."""
+        return len({row.place for row in self.rows})
+
+    @property
+    def row_words(self) -> str:
+        """Its rows in words; empty for one."""
+        if self.rows == ONE_ROW:
+            return ""
+        if self.ball_rows == 1:
+            return "two arcs on each raceway: contacts that carry either way are told as balls of their own"
+        ways = "".join("+" if row.way > 0.0 else "-" for row in self.rows)
+        places = " and ".join(f"{row.place / 1e-3:.4g}" for row in self.rows)
+        pressed = {round(1e6 * row.shift, 6) for row in self.rows} - {0.0}
+        shifts = f", pressed by {' and '.join(f'{one:.4g}' for one in sorted(pressed))} um" if pressed else ""
+        return f"{len(self.rows)} rows ({ways}) at {places} mm{shifts}"
 
     @property
     def gamma(self) -> float:
@@ -146,7 +196,20 @@ class BallGeometry(Named):
     @property
     def radial_distance(self) -> float:
         """Radial distance of the groove centres of centred rings, A cos(alpha) - s/2 [m]."""
-        return self.groove_distance * math.cos(self.contact_angle) - 0.5 * self.clearance
+        play = 0.0 if self.axial_play else self.clearance
+        return self.groove_distance * math.cos(self.contact_angle) - 0.5 * play
+
+    @property
+    def axial_play(self) -> bool:
+        """Whether its clearance is axial: rows that carry either way have one by where their grooves stand."""
+        return self.contact_angle != 0.0 and len({row.way for row in self.rows}) > 1
+
+    @property
+    def shifted_rows(self) -> tuple[BallRow, ...]:
+        """Its rows with what an axial clearance loosens them."""
+        if not self.axial_play:
+            return self.rows
+        return tuple(row._replace(shift=row.shift - 0.5 * self.clearance) for row in self.rows)
 
     @property
     def free_angle(self) -> float:
@@ -203,7 +266,7 @@ class BallGeometry(Named):
 
     def carries_along(self, way: float) -> bool:
         """Tell whether it carries a force on the inner ring along x, `way` > 0, or along -x."""
-        return self.contact_angle == 0.0 or self.contact_angle * way > 0.0
+        return self.contact_angle == 0.0 or any(self.contact_angle * row.way * way > 0.0 for row in self.rows)
 
     def cage_speed(self, inner_speed: float, outer_speed: float = 0.0) -> float:
         """Speed of the cage [rad/s] in pure rolling at the nominal contact angle.

@@ -123,6 +123,8 @@ class BallForce(LocatingForce):
         Masses and sizes of the balls for `mbs.bearings.balls.ball_speed`, at rest.
     directions : (array (Z,), array (Z,))
         Directions of the balls in the cage, y and z.
+    rows : array (Z, 4)
+        Way, place [m] and shift [m] of the row of each ball, and how far its other contacts are, see `BallGeometry`.
     """
 
     rolling_element = "ball"
@@ -143,14 +145,20 @@ class BallForce(LocatingForce):
             inner_arm=(geometry.inner_conformity - 0.5) * geometry.ball_diameter,
             outer_arm=(geometry.outer_conformity - 0.5) * geometry.ball_diameter,
             most_travel=distance,
-            most_tilt=distance / geometry.inner_groove_radius,
+            most_tilt=distance / max(geometry.inner_groove_radius, *(abs(row.place) for row in geometry.rows)),
         )
         mass, diameter, pitch = geometry.ball_mass(material), geometry.ball_diameter, geometry.pitch_diameter
         self.drive = Drive(0.0, 0.0, math.nan, diameter / pitch, 0.5 * mass * pitch, 0.2 * mass * pitch)
-        self.angles, self.film_loads = directions(geometry.balls), law.loads
+        self.angles = np.tile(directions(geometry.balls), len(geometry.rows))
+        self.film_loads = law.loads
+        turned = np.array([1.0, math.copysign(1.0, angle), math.copysign(1.0, angle), 1.0])
+        rows = [
+            (*row, other * geometry.balls) for row, other in zip(geometry.shifted_rows, geometry.others, strict=True)
+        ]
+        self.rows = np.repeat(np.array(rows, dtype=np.float64) * turned, geometry.balls, axis=0)
         self.same_films = dataclasses.replace(geometry, clearance=0.0, contact_angle=abs(geometry.contact_angle))
         self.directions = np.cos(self.angles), np.sin(self.angles)
-        balls = geometry.balls
+        balls = geometry.rolling_elements
         self._pose, self._starts, self._balls = np.zeros(6), np.zeros((balls, START)), np.zeros((balls, COLUMNS))
         self._out = np.zeros(6), np.zeros((6, 6)), np.zeros((6, 6))
         self._rest = (0.0, 0.0)
@@ -160,6 +168,7 @@ class BallForce(LocatingForce):
             balls=balls,
             cosine=self.directions[0],
             sine=self.directions[1],
+            rows=self.rows,
             inner=law_data(law.inner),
             outer=law_data(law.outer),
         )
@@ -178,7 +187,23 @@ class BallForce(LocatingForce):
 
     def beyond(self, pose: FloatArray) -> bool:
         """Tell whether an angular contact bearing is beyond its middle, where it has no raceway."""
-        return bool(self.shape.axial * (self.shape.axial + pose[0]) < 0.0)
+        return bool(np.any(self.shape.axial * (self.shape.axial + self.rows[:, 0] * pose[0]) < 0.0))
+
+    def by_pose(self, angle: FloatArray) -> FloatArray:
+        """Motion of the inner groove's centre of each ball, axial and radial, by the pose, (Z, 2, 6).
+
+        Parameters
+        ----------
+        angle : array (Z,)
+            Angles of the balls [rad].
+        """
+        c, s, arm = np.cos(angle), np.sin(angle), self.shape.arm
+        way, place, *_ = self.rows.T
+        found = np.zeros((angle.size, 2, 6))
+        found[:, 0, 0], found[:, 0, 4], found[:, 0, 5] = way, way * arm * s, -way * arm * c
+        found[:, 1, 1], found[:, 1, 2] = c, s
+        found[:, 1, 4], found[:, 1, 5] = -place * s, place * c
+        return found
 
     @property
     def ratings(self) -> tuple[float, float]:
@@ -226,7 +251,7 @@ class BallForce(LocatingForce):
 
     def _loads(self, angle: FloatArray, idle: float) -> BallLoads:
         """See `LocatingForce`."""
-        self._angles(self.geometry.balls, self._balls.ctypes.data)
+        self._angles(len(self._balls), self._balls.ctypes.data)
         rows = self._balls.T.copy()
         traction, cage = rows[24] * rows[18], float(mean_speed(self._balls, idle))
         return BallLoads(angle, rows[10:12], rows[12:14], rows[14:16], rows[22], rows[23], traction, cage)
@@ -273,6 +298,23 @@ class BallForce(LocatingForce):
         """
         cage = math.nan if cage_speed is None else float(cage_speed)
         return self.drive._replace(inner=float(inner_speed), outer=float(outer_speed), cage=cage)
+
+    def drive_of(self, rows: FloatArray, conditions: dict[str, Any]) -> Drive:
+        """Speeds and masses of balls by their rows, see `last_balls`: one of four contacts has a part of its mass.
+
+        Parameters
+        ----------
+        rows : array (n, COLUMNS)
+            Rows of the balls.
+        conditions : dict
+            Arguments of `drive_at`.
+        """
+        drive = self.drive_at(**conditions)
+        if not np.any(self.rows[:, 3]):
+            return drive
+        whole = drive.centrifugal * rows[:, 22] ** 2
+        part: Any = np.where(whole > 0.0, rows[:, 23] / np.where(whole > 0.0, whole, 1.0), 1.0)
+        return drive._replace(centrifugal=part * drive.centrifugal, gyroscopic=part * drive.gyroscopic)
 
     def _evaluated(
         self, pose: npt.ArrayLike, cage_angle: float, inner_speed: float, outer_speed: float, cage_speed: float | None

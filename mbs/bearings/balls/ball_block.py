@@ -40,6 +40,8 @@ class Balls(Record):
         `BallShape` and `Drive` in their order, at rest.
     cosine, sine : array (count, longest)
         Directions of the balls in the cage.
+    ways : array (count, longest, 4)
+        `BallForce.rows`.
     centres, rows : array (count, longest, START), (count, longest, COLUMNS)
         Starts of the balls, and what is known of each, at the last answer, see `mbs.bearings.balls.ball_data`.
     rests : array (count,)
@@ -67,7 +69,7 @@ class Balls(Record):
         *PLACES,
         ("counts", integers),
         *COURSES,
-        *((name, numbers) for name in ("spins", "lengths", "drives", "cosine", "sine")),
+        *((name, numbers) for name in ("spins", "lengths", "drives", "cosine", "sine", "ways")),
         *((name, numbers) for name in ("centres", "rows", "rests")),
         *WORKS,
         ("relaxes", integers),
@@ -81,6 +83,7 @@ class Balls(Record):
         "lengths": ("count", 7),
         "drives": ("count", 6),
         **dict.fromkeys(("cosine", "sine"), ("count", "longest")),
+        "ways": ("count", "longest", 4),
         "centres": ("count", "longest", START),
         "rows": ("count", "longest", COLUMNS),
         "held": ("count", "longest", 2, HELD),
@@ -107,8 +110,10 @@ class BallBlock(LocatingBlock):
         super().__init__(members)
         elements, count, most = self.elements, len(self.elements), self.longest
         cosine, sine = np.zeros((2, count, most))
+        ways = np.zeros((count, most, 4))
         for b, one in enumerate(elements):
             cosine[b, : self.size(b)], sine[b, : self.size(b)] = one.force.directions
+            ways[b, : self.size(b)] = one.force.rows
         self.arrays |= {
             "counts": np.array([self.size(b) for b in range(count)], dtype=np.int64),
             "spins": self.rows([(one.inner_spin, one.outer_spin) for one in elements], 2),
@@ -116,6 +121,7 @@ class BallBlock(LocatingBlock):
             "drives": self.rows([one.force.drive for one in elements], 6),
             "cosine": cosine,
             "sine": sine,
+            "ways": ways,
             "centres": np.zeros((count, most, START)),
             "rows": np.zeros((count, most, COLUMNS)),
             "rests": np.zeros(count),

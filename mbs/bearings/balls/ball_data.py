@@ -65,8 +65,9 @@ class BallData(Record):
         ("balls", ctypes.c_int64),
         ("cosine", numbers),
         ("sine", numbers),
+        ("rows", numbers),
         ("held", numbers),
         ("inner", LawData),
         ("outer", LawData),
     )
-    shapes: ClassVar = {"cosine": ("balls",), "sine": ("balls",), "held": ("balls", 2, 3)}
+    shapes: ClassVar = {"cosine": ("balls",), "sine": ("balls",), "rows": ("balls", 4), "held": ("balls", 2, 3)}

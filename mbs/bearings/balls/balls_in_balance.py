@@ -60,8 +60,8 @@ def ball_relaxation(force: BallForce, balls: BallLoads, conditions: dict[str, An
     rows, times = np.zeros((balls.angle.size, 2 * TIMES.size, 6)), np.ones((balls.angle.size, 2 * TIMES.size))
     on = found[:, 10] > 0.0  # others do nothing
     if law.responses and np.any(on):
-        contacts, _ = _contacts(law, shape, found[on], force.drive_at(**conditions))
-        made = relaxation(contacts, _by_pose(shape.arm, balls.angle[on]))
+        contacts, _ = _contacts(law, shape, found[on], force.drive_of(found[on], conditions))
+        made = relaxation(contacts, force.by_pose(balls.angle)[on])
         rows[on], times[on] = made.rows.reshape(rows[on].shape), made.times.reshape(times[on].shape)
     return Relaxation(rows.reshape(-1, 6), times.reshape(-1))
 
@@ -84,9 +84,10 @@ def balls_in_balance(force: BallForce, balls: BallLoads, conditions: dict[str, A
     on = rows[:, 10] > _LEAST * rows[:, 10].max()
     if not law.responses or not np.any(on):
         return None
-    rows, drive = rows[on], force.drive_at(**conditions)
+    rows = rows[on]
+    drive = force.drive_of(rows, conditions)
     contacts, at = _contacts(law, shape, rows, drive)
-    pose, slopes_of_law = _by_pose(shape.arm, balls.angle[on]), _law_slopes(law, rows, contacts.stiffness)
+    pose, slopes_of_law = force.by_pose(balls.angle)[on], _law_slopes(law, rows, contacts.stiffness)
     moved = followed(contacts, pose, slopes_of_law.thicker)
     slopes = law_slopes(contacts, moved, slopes_of_law, locked=False)
     arms = np.stack([moved.motion[..., :2] - moved.motion[..., 2:], moved.motion[..., 2:]], axis=2)
@@ -132,15 +133,6 @@ def _both(sides: list[FloatArray]) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Numbers (3, Z) of both sides as three arrays (Z, 2)."""
     first, second, third = np.stack(sides, axis=-1)
     return first, second, third
-
-
-def _by_pose(arm: float, angle: FloatArray) -> FloatArray:
-    """D of each ball by the pose, (Z, 2, 6)."""
-    c, s = np.cos(angle), np.sin(angle)
-    found = np.zeros((angle.size, 2, 6))
-    found[:, 0, 0], found[:, 0, 4], found[:, 0, 5] = 1.0, arm * s, -arm * c
-    found[:, 1, 1], found[:, 1, 2] = c, s
-    return found
 
 
 def _geometry(at: _Places, drive: Drive) -> tuple[Any, Any]:

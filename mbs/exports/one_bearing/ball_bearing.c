@@ -10,18 +10,25 @@ size_t ehd_balls_size(void) { return sizeof(ehd_balls); }
 
 int ehd_bearing_make(ehd_bearing *bearing, double clearance, int mirrored) {
     const double two_pi = 6.283185307179586476925, apart = GROOVE_DISTANCE * cos(EHD_CONTACT_ANGLE);
+    const double axial = AXIAL_PLAY ? clearance : 0.0;
     if (!bearing || !(fabs(clearance) < apart)) return EHD_BAD_ARGUMENT;
     bearing->clearance = clearance;
     bearing->mirrored = mirrored != 0;
     bearing->axial = (mirrored ? -1.0 : 1.0) * GROOVE_DISTANCE * sin(EHD_CONTACT_ANGLE);
-    bearing->radial = apart - 0.5 * clearance;
+    bearing->radial = apart - 0.5 * (clearance - axial);
     /* the inner groove's centre at the free contact angle */
     bearing->arm = 0.5 * EHD_PITCH_DIAMETER + INNER_ARM * least(bearing->radial / GROOVE_DISTANCE, 1.0);
     bearing->most_travel = GROOVE_DISTANCE;
     bearing->most_tilt = GROOVE_DISTANCE / bearing->arm;
     for (int j = 0; j < EHD_BALLS; j++) {
-        bearing->cosine[j] = cos(two_pi * j / EHD_BALLS);
-        bearing->sine[j] = sin(two_pi * j / EHD_BALLS);
+        const double *row = row_of[j / EHD_ROW_BALLS], turned = mirrored ? -1.0 : 1.0;
+        bearing->cosine[j] = cos(two_pi * (j % EHD_ROW_BALLS) / EHD_ROW_BALLS);
+        bearing->sine[j] = sin(two_pi * (j % EHD_ROW_BALLS) / EHD_ROW_BALLS);
+        bearing->row[j][0] = row[0];
+        bearing->row[j][1] = turned * row[1];
+        bearing->row[j][2] = turned * (row[2] - 0.5 * axial);
+        bearing->row[j][3] = row[3];
+        bearing->most_tilt = least(bearing->most_tilt, GROOVE_DISTANCE / most(fabs(row[1]), 1e-300));
     }
     return EHD_OK;
 }
@@ -51,7 +58,9 @@ static int bearing_at(const ehd_bearing *bearing, const ehd_law *law, ehd_balls 
         !(fabs(outer_speed) <= FASTEST) || (cage && !(fabs(*cage) <= FASTEST)))
         return no_force(result, EHD_BAD_ARGUMENT);
     if (!is_finite(cage_angle) || !finite_motion(pose, velocity)) return no_force(result, EHD_NOT_FINITE);
-    if (!(bearing->axial * (bearing->axial + pose[0]) >= 0.0)) return no_force(result, EHD_TOO_FAR);
+    for (int j = 0; j < EHD_BALLS; j += EHD_ROW_BALLS)
+        if (!(bearing->axial * (bearing->axial + bearing->row[j][0] * pose[0]) >= 0.0))
+            return no_force(result, EHD_TOO_FAR);
     const double nominal = cage ? *cage : ehd_cage(inner_speed, outer_speed);
     const ehd_pair_law inner = pair_of(&law->inner), outer = pair_of(&law->outer);
     const double rest = balls->rest = ehd_pair_approach(&outer, CENTRIFUGAL * nominal * nominal, balls->rest);
@@ -60,7 +69,7 @@ static int bearing_at(const ehd_bearing *bearing, const ehd_law *law, ehd_balls 
         {bearing->axial, bearing->radial, bearing->arm, INNER_ARM, OUTER_ARM, bearing->most_travel, bearing->most_tilt},
         {still ? 0.0 : inner_speed, still ? 0.0 : outer_speed, still || !cage ? NAN : *cage,
          EHD_BALL_DIAMETER / EHD_PITCH_DIAMETER, CENTRIFUGAL, GYROSCOPIC},
-        cage_angle, rest, EHD_BALLS, bearing->cosine, bearing->sine, held, inner, outer};
+        cage_angle, rest, EHD_BALLS, bearing->cosine, bearing->sine, bearing->row[0], held, inner, outer};
     ehd_ball_start *start = (ehd_ball_start *)balls->start;
     ehd_ball_found found[EHD_BALLS];
     const int loaded =

@@ -6,7 +6,7 @@
  * on the inner ring [N], [N m], about its centre. theta_x has no force. The outer ring gets the opposite. In the pose
  * zero angular contact bearings without clearance just touch.
  *
- * Ball j stands at cage_angle + 2 pi j/EHD_BALLS, from y towards z. Each ball is in balance with both raceways, its
+ * Ball j stands at cage_angle + 2 pi j/EHD_ROW_BALLS, from y towards z. Each ball is in balance with both raceways, its
  * centrifugal load and its gyroscopic moment, which traction at the outer raceway holds. It goes around at the speed of its
  * own contact angles, by which it rolls at both raceways and does not drill at the outer one. Balls have no inertia beside
  * that.
@@ -31,6 +31,7 @@ typedef struct ehd_bearing {
     double arm;                              /* distance of the inner groove's centre from the axis [m] */
     double most_travel, most_tilt;           /* largest accepted displacement [m] and tilt [rad] */
     double cosine[EHD_BALLS], sine[EHD_BALLS]; /* directions of the balls in the cage */
+    double row[EHD_BALLS][4]; /* way, place [m] and shift [m] of their rows; balls to their other contacts */
 } ehd_bearing;
 
 /* A ball in balance. */
@@ -54,7 +55,7 @@ typedef struct ehd_balls {
 
 /* Make a bearing.
  *
- * clearance: diametral clearance in force [m], < 0 for preload; EHD_CLEARANCE is the one of the export. mirrored: 0, or
+ * clearance: diametral clearance in force, axial of rows that carry either way [m], < 0 for preload; EHD_CLEARANCE is the one of the export. mirrored: 0, or
  * 1 for an angular contact bearing that stands the other way round, and carries an axial force on the inner ring in -x. */
 int ehd_bearing_make(ehd_bearing *bearing, double clearance, int mirrored);
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ehdmaps.exports.c.text import define
+from ehdmaps.exports.c.text import define, number
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.response import SHORTER
 from mbs.exports.one_bearing.kind import ExportKind
@@ -13,11 +13,12 @@ def _public(force: BallForce) -> str:
     geometry = force.geometry
     return "".join(
         (
-            define("EHD_BALLS", geometry.balls, "number of balls"),
+            define("EHD_BALLS", geometry.rolling_elements, "number of balls"),
+            define("EHD_ROW_BALLS", geometry.balls, "number of balls of a row"),
             define("EHD_BALL_DIAMETER", geometry.ball_diameter, "[m]"),
             define("EHD_PITCH_DIAMETER", geometry.pitch_diameter, "[m]"),
             define("EHD_CONTACT_ANGLE", geometry.contact_angle, "nominal [rad]"),
-            define("EHD_CLEARANCE", geometry.clearance, "diametral clearance of the export [m]"),
+            define("EHD_CLEARANCE", geometry.clearance, "clearance of the export, see ehd_bearing_make [m]"),
             define("EHD_CAGE_INNER", 0.5 * (1.0 - geometry.gamma), "turns of the cage for each of the inner ring"),
             define("EHD_CAGE_OUTER", 0.5 * (1.0 + geometry.gamma), "turns of the cage for each of the outer ring"),
             define("EHD_ENTRAINMENT", geometry.entrainment_speed(1.0, 0.0), "entrainment speed [m/rad], see below"),
@@ -28,12 +29,18 @@ def _public(force: BallForce) -> str:
 def _private(force: BallForce) -> str:
     """Constants that only the functions read."""
     geometry, shape, drive = force.geometry, force.shape, force.drive
+    rows = [(*row, other * geometry.balls) for row, other in zip(geometry.rows, geometry.others, strict=True)]
     return (
         define("GROOVE_DISTANCE", geometry.groove_distance, "of the grooves' centres where balls just touch [m]")
         + define("INNER_ARM", shape.inner_arm, "of the inner groove's centre and the centre of a ball that touches [m]")
         + define("OUTER_ARM", shape.outer_arm, "the same of the outer one [m]")
         + define("CENTRIFUGAL", drive.centrifugal, "centrifugal load of a ball over the square of its speed [kg m]")
         + define("GYROSCOPIC", drive.gyroscopic, "the same of the traction of its gyroscopic moment [kg m]")
+        + define("AXIAL_PLAY", int(geometry.axial_play), "1: the clearance is axial, and shifts the rows")
+        + "/* rows: way along x, place [m], shift of the inner groove [m], other contacts */\n"
+        + "static const double row_of[EHD_BALLS / EHD_ROW_BALLS][4] = {"
+        + ", ".join("{" + ", ".join(number(float(part)) for part in row) + "}" for row in rows)
+        + "};\n"
     )
 
 

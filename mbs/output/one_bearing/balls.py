@@ -88,13 +88,15 @@ def _angles(row: Row) -> str:
 def _about(description: Description, point: BallPoint) -> list[str]:
     """Lines on the geometry and the load."""
     geometry = point.force.geometry
+    play = "axial clearance" if geometry.axial_play else "clearance"
     record = geometry.record()
     materials = [f"{part}s of {record[key]}" for part in ("ball", "ring") if (key := f"{part}_material") in record]
     return [
         f"{geometry.balls} balls of {1e3 * geometry.ball_diameter:.4g} mm on {1e3 * geometry.pitch_diameter:.4g} mm, "
         f"grooves {geometry.inner_conformity:.4g} and {geometry.outer_conformity:.4g}, contact angle "
-        f"{DEGREE.value(geometry.contact_angle):.4g} deg, clearance {MICROMETRE.text(geometry.clearance)}"
+        f"{DEGREE.value(geometry.contact_angle):.4g} deg, {play} {MICROMETRE.text(geometry.clearance)}"
         f"{beside_class(geometry)}",
+        *([geometry.row_words] if geometry.row_words else []),
         *(["; ".join(materials)] if materials else []),
         f"{TEMPERATURE.text(description.temperature)}, {tilting(description, 'ball')}",
     ]

@@ -26,6 +26,8 @@ static int balls(void) {
     const int64_t count = up_to(12);
     const double apart = 0.4e-3, angle = part() < 0.5 ? 0.0 : 0.7 * (part() - 0.5), arm = 22e-3;
     double pose[6], out[78], law[3], held[3], *cosine = room(count), *sine = room(count), *kept = room(6 * count);
+    double *rows = room(4 * count);
+    const int one = part() < 0.5;
     ehd_ball_start *start = calloc((size_t)count, sizeof *start);
     ehd_ball_found *found = calloc((size_t)count, sizeof *found);
     const int dry = part() < 0.3, with_memory = !dry && part() < 0.5;
@@ -33,12 +35,16 @@ static int balls(void) {
     for (int64_t j = 0; j < count; j++) {
         cosine[j] = cos(6.283 * (double)j / (double)count);
         sine[j] = sin(6.283 * (double)j / (double)count);
+        rows[4 * j] = part() < 0.5 ? 1.0 : -1.0;
+        rows[4 * j + 1] = number(1e-2);
+        rows[4 * j + 2] = number(1e-5);
+        rows[4 * j + 3] = j + 1 < count && part() < 0.5 ? 1.0 : 0.0;
     }
     for (int64_t i = 0; i < 6 * count; i++) kept[i] = number(i % 3 == 0 ? 100.0 : i % 3 == 1 ? 1e8 : 1e-6);
     ehd_ball_data data = {{apart * sin(angle), apart * cos(angle) - 1e-5 * (part() - 0.5), arm, 0.5 * apart, 0.5 * apart,
                            apart, apart / arm},
                           {0.0, 0.0, part() < 0.2 ? 100.0 * part() : NAN, 0.2, 1e-4, 5e-5},
-                          0.0, 0.0, count, cosine, sine, with_memory ? kept : NULL, pair_law(dry), pair_law(dry)};
+                          0.0, 0.0, count, cosine, sine, one ? NULL : rows, with_memory ? kept : NULL, pair_law(dry), pair_law(dry)};
     for (int turn = 0; turn < 4; turn++) {
         double size = 0.0, kept_size = 0.0;
         for (int i = 0; i < 6; i++) pose[i] = number(i < 3 ? 3e-5 : 1e-3);
@@ -66,6 +72,7 @@ static int balls(void) {
     free(cosine);
     free(sine);
     free(kept);
+    free(rows);
     free(start);
     free(found);
     return failed;

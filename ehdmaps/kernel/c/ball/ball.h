@@ -51,6 +51,7 @@ typedef struct ehd_ball_data {
     double rest;       /* approach at the outer raceway under the centrifugal load alone [m] */
     int64_t balls;
     const double *cosine, *sine; /* (balls,): directions of the balls in the cage, y and z */
+    const double *rows;          /* (balls, 4): of its row: way, place, shift, other, see ball_bearing.c; null: one row */
     const double *held;          /* (balls, 2, 3): what contacts with memory hold over a step, or null */
     ehd_pair_law inner, outer;
 } ehd_ball_data;

@@ -3,9 +3,20 @@
  *
  * Frame O sits in the middle of the outer groove, x along its axis. A pose is x y z theta_x theta_y theta_z of the inner
  * ring in O [m], [rad], tilts theta_y = -n_z, theta_z = n_y by the axis n of the ring; theta_x has no force.
+ *
+ * A row of balls carries +x, way 1, or -x, way -1: its balls are seen in a mirror. It stands at a place p along x, and its
+ * inner groove's centre is shifted by what presses (> 0) or loosens the row. Of arm r the inner groove's centre of a ball in
+ * the direction (c, s) moves by
+ *
+ *     axial   way (x + r (theta_y s - theta_z c)) + shift,        radial   y c + z s + p (theta_z c - theta_y s).
+ *
+ * The ball of a four-point contact bearing is one in each of two rows, the other one `other` places further. It has its
+ * mass where its contacts are: the part of each row is that of how far its grooves overlap, half where none do.
  * ------------------------------------------------------------------------------------------------------------------ */
 
 EHD_SIZE_OF(ehd_ball_data)
+
+static const double one_row[4] = {1.0, 0.0, 0.0, 0.0};
 
 /* Add what a ball has by d to a matrix (6, 6); d by pose: axial (1, 0, 0, 0, y, z), radial (0, c, s, 0, 0, 0). */
 EHD_INLINE void ball_add(const double m[4], double c, double s, double y, double z, double *out) {
@@ -35,6 +46,32 @@ EHD_INLINE void ball_add(const double m[4], double c, double s, double y, double
     out[32] += xr * z * s;
     out[34] += xx * z * y;
     out[35] += xx * z * z;
+}
+
+/* The same of what a place p along the axis adds to the radial motion of a ball: t = (0, ..., -p s, p c). */
+static void ball_add_place(const double m[4], double c, double s, double y, double z, double p, double *out) {
+    const double a[6] = {1.0, 0.0, 0.0, 0.0, y, z}, b[6] = {0.0, c, s, 0.0, 0.0, 0.0}, t[2] = {-p * s, p * c};
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j < 2; j++) {
+            out[6 * i + 4 + j] += (a[i] * m[1] + b[i] * m[3]) * t[j];
+            out[6 * (4 + j) + i] += t[j] * (m[2] * a[i] + m[3] * b[i]);
+        }
+    for (int i = 0; i < 4; i++) out[6 * (4 + i / 2) + 4 + i % 2] += m[3] * t[i / 2] * t[i % 2];
+}
+
+/* d of a ball in the direction (c, s), and its row. */
+static const double *ball_groove(const ehd_ball_data *of, int64_t j, const double *pose, double c, double s, double *dx,
+                                 double *dr) {
+    const double *row = of->rows ? of->rows + 4 * j : one_row;
+    *dx = of->shape.axial + row[0] * (pose[0] + of->shape.arm * (pose[4] * s - pose[5] * c)) + row[2];
+    *dr = of->shape.radial + pose[1] * c + pose[2] * s;
+    if (row[1] != 0.0) *dr += row[1] * (pose[5] * c - pose[4] * s);
+    return row;
+}
+
+/* By how much a ball between two grooves at d is pressed, if at all [m]. */
+static double ball_overlap(const ehd_ball_data *of, double dx, double dr) {
+    return most(sqrt(dx * dx + dr * dr) - of->shape.inner_arm - of->shape.outer_arm, 0.0);
 }
 
 /* What is wrong about a pose: 0, EHD_BALL_NOT_FINITE or EHD_BALL_TOO_FAR. */
@@ -68,23 +105,37 @@ int ehd_ball_force(const ehd_ball_data *of, const double *pose, ehd_ball_start *
         const double c = turn_c * of->cosine[j] - turn_s * of->sine[j];
         const double s = turn_s * of->cosine[j] + turn_c * of->sine[j];
         ehd_ball_found *ball = &found[j];
-        on.dx = of->shape.axial + pose[0] + arm * (pose[4] * s - pose[5] * c);
-        on.dr = of->shape.radial + pose[1] * c + pose[2] * s;
+        const double *row = ball_groove(of, j, pose, c, s, &on.dx, &on.dr), way = row[0], place = row[1];
+        if (row[3] != 0.0) {
+            double x, r;
+            ball_groove(of, j + (int64_t)row[3], pose, c, s, &x, &r);
+            const double own = ball_overlap(of, on.dx, on.dr), both = own + ball_overlap(of, x, r);
+            const double part = both > 0.0 ? own / both : 0.5;
+            on.drive.centrifugal = part * of->drive.centrifugal;
+            on.drive.gyroscopic = part * of->drive.gyroscopic;
+        }
         if (of->held) {
             on.held_inner = of->held + 6 * j;
             on.held_outer = of->held + 6 * j + 3;
         }
         if (!ball_place(&on, share, &start[j], ball)) return EHD_BALL_NO_BALANCE;
         if (ball->load[0] <= 0.0) continue;
-        const double y = arm * s, z = -arm * c;
+        const double y = arm * s, z = -arm * c, along = way * ball->force[0];
         loaded++;
-        force[0] -= ball->force[0];
+        force[0] -= along;
         force[1] -= c * ball->force[1];
         force[2] -= s * ball->force[1];
-        force[4] -= y * ball->force[0];
-        force[5] -= z * ball->force[0];
-        ball_add(ball->stiffness, c, s, y, z, stiffness);
-        ball_add(ball->damping, c, s, y, z, damping);
+        force[4] -= y * along;
+        force[5] -= z * along;
+        const double *k = ball->stiffness, *d = ball->damping;
+        const double spring[4] = {k[0], way * k[1], way * k[2], k[3]}, damper[4] = {d[0], way * d[1], way * d[2], d[3]};
+        ball_add(spring, c, s, y, z, stiffness);
+        ball_add(damper, c, s, y, z, damping);
+        if (place == 0.0) continue;
+        force[4] += place * s * ball->force[1];
+        force[5] -= place * c * ball->force[1];
+        ball_add_place(spring, c, s, y, z, place, stiffness);
+        ball_add_place(damper, c, s, y, z, place, damping);
     }
     return loaded;
 }

@@ -20,6 +20,7 @@ typedef struct ehd_ball_block {
     const ehd_ball_shape *lengths;          /* (count,) */
     const ehd_ball_drive *drives;           /* (count,): at rest */
     const double *cosine, *sine;            /* (count, longest) */
+    const double *ways;                     /* (count, longest, 4): rows of ehd_ball_data */
     ehd_ball_start *centres;                /* (count, longest) */
     ehd_ball_found *rows;                   /* the same: of the last answer */
     double *rests;                          /* (count,): approach under the centrifugal load alone [m] */
@@ -46,6 +47,16 @@ static void ball_hold_all(const ehd_ball_block *of, double step) {
     }
 }
 
+/* Whether a row of angular contact is beyond its middle, where it has no raceway. */
+static int ball_beyond(const ehd_ball_data *of, double x) {
+    for (int64_t j = 0; j < of->balls; j++) {
+        const double way = of->rows ? of->rows[4 * j] : 1.0;
+        if (of->shape.axial * (of->shape.axial + way * x) < 0.0) return 1;
+        if (!of->rows) break;
+    }
+    return 0;
+}
+
 /* Write the answer of a bearing; what ehd_ball_force returns. */
 static int ball_on_ring(const ehd_ball_block *of, int64_t b, const ehd_moment *at, const double *motion,
                         ehd_answers *answers) {
@@ -54,8 +65,6 @@ static int ball_on_ring(const ehd_ball_block *of, int64_t b, const ehd_moment *a
     ehd_ball_data data;
     data.shape = of->lengths[b];
     pair_read_pose(first, of->offsets[b], motion, pose);
-    /* an angular contact bearing beyond its middle, where it has no raceway */
-    if (data.shape.axial * (data.shape.axial + pose[0]) < 0.0) return EHD_BALL_TOO_FAR;
     data.inner = pair_law_of(of->films, of->films_of[b], 0);
     data.outer = pair_law_of(of->films, of->films_of[b], 1);
     data.drive = of->drives[b];
@@ -66,6 +75,8 @@ static int ball_on_ring(const ehd_ball_block *of, int64_t b, const ehd_moment *a
     if (data.inner.rows == 0 && data.rest < BALL_NEGLIGIBLE) data.drive.inner = data.drive.outer = 0.0;
     data.cage_angle = of->starts[b] + of->turns[b] * at->angle;
     data.balls = of->counts[b];
+    data.rows = of->ways + 4 * row;
+    if (ball_beyond(&data, pose[0])) return EHD_BALL_TOO_FAR;
     data.cosine = of->cosine + row;
     data.sine = of->sine + row;
     data.held = of->relaxes[b] ? of->held + 6 * row : NULL;
