@@ -177,6 +177,10 @@ _ORDER = 24
 _HALVINGS = 50
 
 
+_ALL = 1e10
+"""Flow over layer above which only the layer passes, to round-off."""
+
+
 def passing(flow: FloatArray | float, layer: float | FloatArray) -> FloatArray:
     """Part r of the flooded contact's flow that a layer lets through, its corner rounded; both in m.
 
@@ -192,8 +196,10 @@ def passing(flow: FloatArray | float, layer: float | FloatArray) -> FloatArray:
     >>> [round(float(r), 4) for r in passing(np.array([1e-7, 1e-6, 1e-5]), 1e-6)]
     [1.0, 0.917, 0.1]
     """
-    with np.errstate(over="ignore"):  # of a contact that hardly carries, of which nothing passes
-        passed: FloatArray = (1.0 + (np.asarray(flow, dtype=np.float64) / layer) ** CORNER) ** (-1.0 / CORNER)
+    ratio = np.asarray(flow, dtype=np.float64) / layer
+    with np.errstate(over="ignore", divide="ignore"):
+        # of a contact that hardly carries the power overflows: only the layer passes
+        passed: FloatArray = np.where(ratio > _ALL, 1.0 / ratio, (1.0 + ratio**CORNER) ** (-1.0 / CORNER))
     return passed
 
 

@@ -93,7 +93,7 @@ def _answer(request: Request, banded: bool) -> _Answer:
 
     family, description, points = request.family, request.description, one.points_of(request)
     bands = one.bands_of(request, points) if banded else {}
-    told = point_lines(bands, one.scene_as(request)) if bands else []
+    told = point_lines(bands, one.scene_as(request), one.open_of(request)) if bands else []
     lines = point_text(family.kind, description, points, [*family.beside(request, points), *told])
     return _Answer(description, points, bands, lines)
 

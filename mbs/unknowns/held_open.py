@@ -74,7 +74,10 @@ def held_open_of(model: Model) -> tuple[Unknown, ...]:
         The model.
     """
     flooded = all(supply.flooded for supply in model.supplies.values())  # that of the job of a map is stated
-    return (*held_open(model.scene, model.has_films), *(_supplies(model.scene) if model.has_films and flooded else ()))
+    return (
+        *held_open(model.scene, model.has_films),
+        *(other_supplies(model.scene) if model.has_films and flooded else ()),
+    )
 
 
 def held_open(scene: Scene, films: bool = True) -> tuple[Unknown, ...]:
@@ -102,6 +105,20 @@ def held_open(scene: Scene, films: bool = True) -> tuple[Unknown, ...]:
         *_loads(scene),
         *_cages(scene),
     )
+
+
+def other_supplies(scene: Scene) -> Iterator[Unknown]:
+    """List other oil supplies beside flooded films, where none is stated.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    """
+    if scene.supply is None and all(getattr(entry, "supply", None) is None for entry in scene.of_all_kinds):
+        for text in SUPPLIES:
+            changed = dataclasses.replace(scene, supply=OilSupply.named(text))
+            yield Unknown(text, "supply", "in place of flooded", "not stated: assumed", (changed,), beside=True)
 
 
 def _clearances(scene: Scene) -> Iterator[Unknown]:
@@ -192,14 +209,6 @@ def _layers(scene: Scene) -> Iterator[Unknown]:
     held = ", ".join(f"{least * layer:.3g} to {most * layer:.3g} um" for layer in layers)
     looks, one = looks_of([_at(with_layers, scene, factor) for factor in (least, most)])
     yield Unknown("oil layer", "oil_layer", held, why, looks, one)
-
-
-def _supplies(scene: Scene) -> Iterator[Unknown]:
-    """Other oil supplies, where none is stated."""
-    if scene.supply is None and all(getattr(entry, "supply", None) is None for entry in scene.of_all_kinds):
-        for text in SUPPLIES:
-            changed = dataclasses.replace(scene, supply=OilSupply.named(text))
-            yield Unknown(text, "supply", "in place of flooded", "not stated: assumed", (changed,), beside=True)
 
 
 def _preload(scene: Scene) -> Iterator[Unknown]:

@@ -106,16 +106,27 @@ def test_bearings_with_axial_load_take_an_oil_layer(name, capsys, tmp_path, monk
     """A thick one is flooded, to what the cap of the films lets through; a thin one leaves less to damp."""
     monkeypatch.chdir(tmp_path)
     ask = (name, "--load", "2 kN", "--axial", "2 kN", "--speed", "3000 rpm", "-o", "a.nc")
-    found = {}
+    found, films = {}, {}
     for supply in ("flooded", "1 mm", "1 um"):
         status, page, err = run(capsys, "bearing", *ask, "--supply", supply)
         assert status == 0, err
         with xr.open_dataset("a.nc") as data:
             found[supply] = [float(data[name][0, 0]) for name in ("stiffness_along", "damping_along")]
+            films[supply] = np.nanmin(data["minimum_film"].values)
+        assert "in place of flooded" not in page  # it is stated
     assert found["1 mm"] == pytest.approx(found["flooded"], rel=1e-3)
     # points keep the damping of their flooded films, and balls move to other loads and angles
     assert found["1 um"] != pytest.approx(found["flooded"], rel=1e-4) and "oil layer 1 um" in page
     assert name == "6208" or found["1 um"][1] < 0.95 * found["flooded"][1]
+    assert 0.3e-6 < films["1 um"] < 0.95 * films["flooded"] and films["1 mm"] == pytest.approx(
+        films["flooded"], rel=1e-3
+    )
+    page = run(capsys, "bearing", *ask[:-2], "--bands", "all")[1]
+    assert [line.split(" in place")[0].strip() for line in page.splitlines() if "in place of flooded" in line] == [
+        "oil bath",
+        "oil air",
+        "grease",
+    ]
     status, _, err = run(capsys, "bearing", *ask, "--law", "hertz", "--supply", "1 um")
     assert status == 2 and "--supply: got oil layer 1 um with dry contacts; allowed: with --law table" in err
 

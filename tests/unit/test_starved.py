@@ -125,6 +125,8 @@ def test_derivative_and_order():
 def test_passing_flow():
     """The flooded flow, or the layer, rounded where they are alike: 8 % less there, 1 % a third away."""
     np.testing.assert_allclose(passing(np.array([1e-9, 1e-3, np.inf]), 1e-6), [1.0, 1e-3, 0.0], rtol=1e-12)
+    # a contact that carries next to nothing has the layer as its film, whose power would overflow
+    np.testing.assert_allclose(passing(np.array([1e3, 1e9, 1e60]), 1e-6), [1e-9, 1e-15, 1e-66], rtol=1e-12)
     assert passing(1e-6, np.inf) == 1.0
     assert passing(1e-6, 1e-6) == pytest.approx(0.917, abs=1e-3)
     assert passing(0.66e-6, 1e-6) > 0.99 and passing(1.5e-6, 1e-6) > 0.99 / 1.5

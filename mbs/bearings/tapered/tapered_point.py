@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.physics.oil_supply import FLOODED
 from ehdmaps.physics.point.film_formulas import film_of, hamrock_dowson_central
 from ehdmaps.units import written
 from mbs.bearings.films import FormulaFilms
@@ -125,13 +126,14 @@ def _lines(force: TaperedForce, rollers: TaperedLoads, course: Course) -> tuple[
     central, minimum = np.full((2, 2, rollers.angle.size), np.nan)
     if oil is None or not speed > 0.0:
         return central, minimum
+    supply = force.films.points[0].law.supply if force.films.points else FLOODED
     for side in range(2):
         for index, place in enumerate(force.positions.tolist()):
             radius = geometry.radius_at(place, side)
             local = tuple(dataclasses.replace(each, radius=radius) for each in contacts)
             share = 1.0 - place / geometry.apex_distance
             loads = rollers.slices[side, :, index]
-            state = FormulaFilms(local, oil).state(side, loads, speed * share, course.temperature)
+            state = FormulaFilms(local, oil, supply).state(side, loads, speed * share, course.temperature)
             central[side] = np.fmin(central[side], state.central_film)
             minimum[side] = np.fmin(minimum[side], state.minimum_film)
     return central, minimum

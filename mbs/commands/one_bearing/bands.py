@@ -4,33 +4,37 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.units import DAMPER, FILM, PRESSURE, SPRING
 from mbs.output.band_text import Quantity, about_lines, lost_lines, quantity_lines
 from mbs.output.one_bearing.kind import Description, Kind, row_of
 from mbs.scene.scene import Scene
 from mbs.scene.specs import BearingSpec, LocatingSpec
-from mbs.unknowns.held_open import held_open
 from mbs.unknowns.looks import Band
 from mbs.unknowns.of_variables import variable_bands
 from mbs.unknowns.statement import known
+from mbs.unknowns.unknown import Unknown
 from mbs.unknowns.words import open_lines
 
 NAME = "bearing"
 """How the bearing is called."""
 
 _MATRICES = (("K", "stiffness", SPRING), ("C", "damping", DAMPER))
+_BESIDE = (("K along", "stiffness_along"), ("C along", "damping_along"), ("film", "minimum_film"))
+"""Numbers of which it is told what other oil supplies change."""
+
 _ELECTRIC = ("capacitance", "breakdown_low", "breakdown_high")
 _CONTACTS = (("pressure", "hertz_pressure", PRESSURE, np.argmax), ("film", "minimum_film", FILM, np.nanargmin))
 
 
-def scene_of(spec: BearingSpec | LocatingSpec, oil: Lubricant, told: Description) -> Scene:
+def scene_of(spec: BearingSpec | LocatingSpec, oil: Lubricant, told: Description, supply: OilSupply | None) -> Scene:
     """A scene of a bearing alone, to ask what is not known of it; it has no bodies.
 
     Parameters
@@ -40,10 +44,12 @@ def scene_of(spec: BearingSpec | LocatingSpec, oil: Lubricant, told: Description
     oil : Lubricant
         Oil of the bearing.
     told : Description
-        Temperature of its raceways, oil supply, and how well its numbers are known.
+        Temperature of its raceways, and how well its numbers are known.
+    supply : OilSupply or None
+        Oil supply as it is stated; None where it is not.
     """
     scene = Scene(name=NAME, speed=0.0, temperature=told.temperature, lubricant=oil, bodies=(), elements=(spec,))
-    scene = dataclasses.replace(scene, supply=told.supply)
+    scene = dataclasses.replace(scene, supply=supply)
     # values are in force already
     return known(scene, tuple(dataclasses.replace(one, value=None) for one in told.known))
 
@@ -61,7 +67,11 @@ def turned(direction: tuple[float, float], angle: float) -> tuple[float, float]:
 
 
 def point_bands(
-    kind: Kind, description: Description, point: Any, scene: Scene, again: Callable[[Scene], tuple[Description, Any]]
+    kind: Kind,
+    description: Description,
+    point: Any,
+    unknowns: Sequence[Unknown],
+    again: Callable[[Scene], tuple[Description, Any]],
 ) -> dict[str, Band]:
     """Bands of the numbers of a point.
 
@@ -73,8 +83,8 @@ def point_bands(
         What is told of it.
     point : object
         The point.
-    scene : Scene
-        The bearing as a scene.
+    unknowns : sequence of Unknown
+        What is not known of the bearing as a scene.
     again : callable
         Gives description and point of a changed scene.
     """
@@ -86,10 +96,10 @@ def point_bands(
         return {name: np.asarray(row[name], dtype=np.float64) for name in names if name in row}
 
     centre = numbers(description, point)
-    return variable_bands(lambda changed, _: numbers(*again(changed)), centre, held_open(scene))
+    return variable_bands(lambda changed, _: numbers(*again(changed)), centre, unknowns)
 
 
-def point_lines(bands: dict[str, Band], scene: Scene) -> list[str]:
+def point_lines(bands: dict[str, Band], scene: Scene, unknowns: Sequence[Unknown]) -> list[str]:
     """Table of the bands of one point, and what they hold.
 
     Parameters
@@ -98,15 +108,16 @@ def point_lines(bands: dict[str, Band], scene: Scene) -> list[str]:
         What `point_bands` finds.
     scene : Scene
         The bearing as a scene.
+    unknowns : sequence of Unknown
+        What is not known of it.
     """
     some = next(iter(bands.values()))
     refused = [line for line in lost_lines(some.of(None), [""]) if "not in the bands" in line]
-    unknowns = held_open(scene)
     lines = [
         *quantity_lines(list(_quantities(bands))),
         *refused,
         *open_lines(unknowns, ""),
-        *about_lines(scene, unknowns),
+        *about_lines(scene, unknowns, {words: bands[name] for words, name in _BESIDE if name in bands}),
     ]
     return [line.replace(f" of {NAME}", "") for line in lines]  # there is no other
 

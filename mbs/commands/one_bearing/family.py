@@ -119,6 +119,8 @@ class Request:
         Whether the law is that of the default: speeds without films are dry then, and say why.
     memory : bool
         Whether the films of a file for another program have a memory.
+    stated_supply : OilSupply or None
+        Oil supply that is stated; None where contacts are only assumed to be flooded.
     oil : Lubricant
         Oil of the films.
     conditions : FilmConditions
@@ -137,6 +139,7 @@ class Request:
     damper: Damper
     by_default: bool
     memory: bool
+    stated_supply: OilSupply | None
     oil: Lubricant
     conditions: FilmConditions
     operating: Operating

@@ -40,7 +40,9 @@ from mbs.scene.contact_laws import table_path
 from mbs.scene.fields import MICROMETRE
 from mbs.scene.map_set import TABLE_LAW
 from mbs.scene.scene import Scene
+from mbs.unknowns.held_open import held_open, other_supplies
 from mbs.unknowns.looks import Band
+from mbs.unknowns.unknown import Unknown
 
 
 def read_request(arguments: argparse.Namespace, family: Family) -> Request:
@@ -110,6 +112,7 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
             damper=damper,
             by_default="law" not in chosen,
             memory=chosen.get("films") == "memory",
+            stated_supply=chosen.get("supply") or asked.supply,
             oil=oil,
             conditions=FilmConditions(heat, supply, surface),
             operating=operating,
@@ -212,7 +215,19 @@ def scene_as(request: Request) -> Scene:
         What is asked.
     """
     spec = request.family.spec(NAME, "", "", request.asked.geometry, **request.asked.options)
-    return scene_of(spec, request.oil, request.description)
+    return scene_of(spec, request.oil, request.description, request.stated_supply)
+
+
+def open_of(request: Request) -> tuple[Unknown, ...]:
+    """List what is not known of the bearing: what no band holds, too.
+
+    Parameters
+    ----------
+    request : Request
+        What is asked.
+    """
+    scene = scene_as(request)
+    return (*held_open(scene), *(other_supplies(scene) if request.films else ()))
 
 
 def bands_of(request: Request, points: Points) -> dict[str, Band]:
@@ -232,7 +247,7 @@ def bands_of(request: Request, points: Points) -> dict[str, Band]:
         other = _changed(request, scene)
         return other.description, points_of(other)[0][0]
 
-    return point_bands(request.family.kind, request.description, points[0][0], scene_as(request), again)
+    return point_bands(request.family.kind, request.description, points[0][0], open_of(request), again)
 
 
 def _changed(request: Request, scene: Scene) -> Request:
