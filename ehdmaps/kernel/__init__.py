@@ -34,15 +34,14 @@ cylinder/cylinder_coupled.c   the same with slices that know of their neighbours
 cylinder/cylinder_call.c      bearings with cylindrical rollers as Python calls them
 pair/pair_law.[hc]            law of a contact of balls, or of lines with tables of their own, over its approach
 pair/pair_speeds.c            such laws over the entrainment speed
-pair/pair_memory.c            a spring in series with a damper over a step
+pair/pair_memory.c            such contacts with films that have a memory: springs in series with dampers over a step
 ball/ball.h                   structures of a ball bearing
 ball/ball_balance.c           the balance of a ball
 ball/ball_bearing.c           force, stiffness and damping of a ball bearing at a pose
-ball/ball_films.c             films of balls with a memory
 taper/taper.h, _lines.c       sums over the slices of a line of a tapered roller, or of a cylindrical one between ribs
 taper/taper_balance.c         the balance of such a roller
 taper/taper_bearing.c         force, stiffness and damping of its bearing at a pose
-taper/taper_films.c           films of such rollers with a memory
+taper/taper_films.c           its films with a memory
 run/rings.[hc]                bearings with cylindrical rollers in runs: how rings and rollers move
 cylinder/cylinder_block.[hc]  such bearings whose films follow at once, or which are dry, as a kind of elements
 film/film_block.c             such bearings with films that have a memory, as a kind of elements

@@ -124,6 +124,23 @@ class Record(ctypes.Structure):
         return _remade, (type(self), self.values_by_name())
 
 
+def room(record: type[Record], sizes: Mapping[str, int]) -> dict[str, Any]:
+    """Make arrays of zeros for all fields of a record whose shapes are known.
+
+    Parameters
+    ----------
+    record : type of Record
+        The struct.
+    sizes : mapping of str to int
+        Lengths that `Record.shapes` names.
+    """
+    types = _types(record)
+    return {
+        name: np.zeros([size if isinstance(size, int) else sizes[size] for size in shape], dtype=_TYPES[types[name]])
+        for name, shape in record.shapes.items()
+    }
+
+
 def address(array: Any, dtype: np.dtype[Any], where: str) -> int:
     """Return the address of an array's numbers, for `ctypes.c_void_p`, after it was checked.
 

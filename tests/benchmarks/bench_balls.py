@@ -27,9 +27,9 @@ from ehdmaps.kernel.library import library
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from mbs.bearings.balls.ball_bearing import BallForce
-from mbs.bearings.balls.ball_memory import FilmsOfBalls
 from mbs.bearings.balls.films import ball_films
 from mbs.bearings.balls.laws import dry_law
+from mbs.bearings.locating.film_memory import FilmsInTime
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.model.relaxation import Films
@@ -171,7 +171,7 @@ def force_of(kind: str, speed: float) -> BallForce:
     force = BallForce(geometry, law)
     if kind == "memory":
         force(POSE, inner_speed=speed)
-        force.held = FilmsOfBalls.at_rest(force).held(2e-5)
+        force.held = FilmsInTime.at_rest(force).held(2e-5, force.shorter)
     return force
 
 

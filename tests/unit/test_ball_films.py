@@ -30,7 +30,7 @@ def curve(load):
 
 def film_law(geometry):
     inner, outer = (film_normal_law(ellipse, curve, LOADS) for ellipse in geometry.contacts(STEEL))
-    return BallLaw("films", inner, outer, LOADS)
+    return BallLaw(inner, outer, LOADS)
 
 
 def test_table_is_what_it_was_made_from() -> None:
@@ -93,7 +93,7 @@ def test_thin_films_are_dry_contacts() -> None:
 
     inner, outer = (film_normal_law(ellipse, thin, LOADS) for ellipse in DEEP.contacts(STEEL))
     pose = np.array([5e-6, 10e-6, 2e-6, 0.0, 0.0, 0.0])
-    filmed = BallForce(DEEP, BallLaw("films", inner, outer, LOADS))(pose)
+    filmed = BallForce(DEEP, BallLaw(inner, outer, LOADS))(pose)
     dry = BallForce(DEEP, dry_law(DEEP))(pose)
     np.testing.assert_allclose(filmed[0], dry[0], rtol=1e-3, atol=1e-3 * np.max(np.abs(dry[0])))
 

@@ -9,7 +9,7 @@ import pytest
 
 from mbs import assemble, read_scene
 from mbs.bearings.locating.locating_block import FELT
-from mbs.bearings.locating.normal_law import contact
+from mbs.bearings.locating.normal_law import contacts_at
 from mbs.model.elements import Operation
 from tests.cases.ball_runs import driven
 
@@ -42,15 +42,19 @@ def test_closed_paths_take_energy_and_balls_lift_off(element):
 
 def test_loads_leave_without_a_step(element):
     """A contact that is pulled keeps a load above zero, with an exact slope on both sides of where pulling begins."""
-    law = element.law_at(600.0 * RPM).inner._replace(held=20.0, spring=3e7, at=2e-6)
+    law = element.law_at(600.0 * RPM).inner
+
+    def contact(approach):
+        return contacts_at(law, np.array([approach]), held=(20.0, 3e7, 2e-6)).ravel().tolist()
+
     begins = 2e-6 - 20.0 / 3e7
     for approach in (*np.linspace(-3e-6, 6e-6, 19), begins):
-        load, slope, damping = contact(law, approach)
-        ahead, back = (contact(law, approach + way * 1e-12)[0] for way in (1.0, -1.0))
+        load, slope, damping = contact(approach)
+        ahead, back = (contact(approach + way * 1e-12)[0] for way in (1.0, -1.0))
         assert load > 0.0 and damping == 0.0
         # round-off of a load in steps of a picometre
         assert slope == pytest.approx((ahead - back) / 2e-12, rel=1e-3, abs=1e-15 * load / 1e-12)
-    assert contact(law, -3e-6)[0] < 0.1
+    assert contact(-3e-6)[0] < 0.1
 
 
 def test_rings_at_rest_are_dry(element):

@@ -20,7 +20,7 @@ from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.tapered.kernel_structs import MEMORY
+from mbs.bearings.locating.film_memory import rows_of
 from mbs.bearings.tapered.rollers_in_balance import by_pose
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from tests.cases.line_films import made_up_films
@@ -132,7 +132,7 @@ def test_films_in_space_give_the_same_force(held) -> None:
     force = force.with_films(made_up_films(GEOMETRY)(3.0))
     rng, memory = np.random.default_rng(5), None
     if held:
-        memory = np.zeros((GEOMETRY.rollers, 2, MEMORY, 7))
+        memory = np.zeros((GEOMETRY.rollers, 2, rows_of(1), 7))
         memory[:, :, 0] = rng.uniform(-300.0, 300.0, memory[:, :, 0].shape)
         memory[:, :, 1] = rng.uniform(0.0, 1e8, memory[:, :, 1].shape)
         memory[:, :, 2] = rng.uniform(-2e-6, 5e-6, memory[:, :, 2].shape)
@@ -150,8 +150,8 @@ def test_films_in_space_give_the_same_force(held) -> None:
 
 def test_memory_of_another_bearing_is_refused() -> None:
     force = TaperedForce(GEOMETRY, slices=7)
-    force.held = np.zeros((GEOMETRY.rollers, 2, MEMORY, 5))
-    with pytest.raises(InputError, match=r"memory: got an array of shape \(17, 2, 7, 5\); allowed: \(17, 2, 7, 7\)"):
+    force.held = np.zeros((GEOMETRY.rollers, 2, rows_of(1), 5))
+    with pytest.raises(InputError, match=r"memory: got an array of shape \(17, 2, 8, 5\); allowed: \(17, 2, 8, 7\)"):
         force(POSE)
 
 

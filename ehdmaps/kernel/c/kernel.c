@@ -65,7 +65,6 @@ EHD_SIZE_OF(ehd_film_data)
 #include "ball/ball.h"
 #include "ball/ball_balance.c"
 #include "ball/ball_bearing.c"
-#include "ball/ball_films.c"
 
 /* tapered rollers */
 #include "taper/taper.h"
@@ -76,7 +75,7 @@ EHD_SIZE_OF(ehd_film_data)
 EHD_SIZE_OF(ehd_taper_data)
 EHD_SIZE_OF(ehd_taper_roller)
 EHD_SIZE_OF(ehd_taper_answer)
-EHD_SIZE_OF(ehd_taper_springs)
+EHD_SIZE_OF(ehd_pair_springs)
 
 /* runs in time: elements, gears, matrices */
 #include "run/rings.c"

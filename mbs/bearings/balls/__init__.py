@@ -1,6 +1,6 @@
 """Ball bearings, deep groove and angular contact: five freedoms, quasi-static, with the speed of their balls.
 
-The balance of the balls, the sums over them and films with memory are in C: `ehdmaps/kernel/c/ball` and `pair`. What
+The balance of the balls and the sums over them are in C: `ehdmaps/kernel/c/ball` and `pair`. What
 balls share with rollers with ribs is in `mbs.bearings.locating`.
 
 =====================  ================================================================================================
@@ -9,7 +9,6 @@ balls share with rollers with ribs is in `mbs.bearings.locating`.
 `ball_bearing`         the force element; loads and contact angles of the balls
 `ball_speed`           speed of the cage by contact angles, loads of the balls by that, their work
 `ball_block`           ball bearings in compiled runs
-`ball_memory`          films with memory in time
 `balls_in_balance`     small motions: films with memory in linear analyses, errors of the film table
 `films`                films of both contacts at one speed, solved at some loads, and the law that they make
 `ball_report`          pressures and films of the contacts at rest, the cost of rolling

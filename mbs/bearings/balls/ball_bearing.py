@@ -43,9 +43,10 @@ from mbs.bearings.balls.ball_data import (
     DriveData,
     ShapeData,
 )
-from mbs.bearings.balls.ball_memory import FilmsOfBalls
 from mbs.bearings.balls.ball_speed import Drive, ball_loads, dry_energy, mean_speed, speed_work
 from mbs.bearings.balls.laws import BallLaw
+from mbs.bearings.balls.response import SHORTER
+from mbs.bearings.locating.film_memory import springs_of
 from mbs.bearings.locating.locating_force import Loads, LocatingForce, directions, later
 from mbs.bearings.locating.normal_law import law_data, load_approach
 from mbs.model.findings import CARRIES
@@ -128,7 +129,7 @@ class BallForce(LocatingForce):
     """
 
     rolling_element = "ball"
-    of_points, in_time = True, FilmsOfBalls
+    of_points, shorter = True, SHORTER
     gauge = later("balls.ball_findings", "ball_gauge")
     felt = later("balls.ball_report", "ball_contacts")
     relaxation = later("balls.balls_in_balance", "ball_relaxation")
@@ -228,16 +229,18 @@ class BallForce(LocatingForce):
 
     @property
     def held(self) -> FloatArray | None:
-        """Numbers that the films of both contacts of each ball hold over a step, see `mbs.bearings.balls.ball_memory`.
-
-        Shape (Z, 2, HELD); None where they have no memory.
-        """
+        """See `LocatingForce.held`."""
         return self._held
 
     @held.setter
     def held(self, held: FloatArray | None) -> None:
         self._held = None if held is None else np.ascontiguousarray(held, dtype=np.float64)
         self._data.put(held=self._held)
+
+    def go_on(self, memory: FloatArray) -> None:
+        """See `LocatingForce.go_on`."""
+        springs, laws = springs_of(self.law, SHORTER), self._data.address + BallData.inner.offset
+        _go_on()(len(self._balls), laws, springs.address, self._balls.ctypes.data, memory.ctypes.data)
 
     def speed_loads(
         self, inner_speed: float, outer_speed: float = 0.0, cage_speed: float | None = None
@@ -341,3 +344,9 @@ def _functions() -> tuple[Callable[..., int], Callable[..., None]]:
     place = ctypes.c_void_p
     force = function("ehd_ball_force_surely", *7 * (place,))
     return force, function("ehd_ball_angles", ctypes.c_int64, place, result=None)
+
+
+@functools.cache
+def _go_on() -> Callable[..., None]:
+    """Memory of films at the end of a step, in C."""
+    return function("ehd_ball_go_on", ctypes.c_int64, *4 * (ctypes.c_void_p,), result=None)

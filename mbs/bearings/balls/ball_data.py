@@ -7,6 +7,8 @@ from typing import ClassVar, NamedTuple
 
 from ehdmaps.kernel.record import Record, numbers
 from mbs.bearings.balls.ball_speed import Drive
+from mbs.bearings.balls.response import SHORTER
+from mbs.bearings.locating.film_memory import rows_of
 from mbs.bearings.locating.normal_law import LawData
 
 COLUMNS = 25
@@ -70,4 +72,9 @@ class BallData(Record):
         ("inner", LawData),
         ("outer", LawData),
     )
-    shapes: ClassVar = {"cosine": ("balls",), "sine": ("balls",), "rows": ("balls", 4), "held": ("balls", 2, 3)}
+    shapes: ClassVar = {
+        "cosine": ("balls",),
+        "sine": ("balls",),
+        "rows": ("balls", 4),
+        "held": ("balls", 2, rows_of(len(SHORTER))),
+    }

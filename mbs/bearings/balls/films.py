@@ -290,7 +290,7 @@ def ball_films(
     )
     responses = tuple(side.response for side in films if side.response is not None)
     known = responses if len(responses) == len(films) else ()
-    return BallFilms(films[0], films[1], BallLaw(f"films of {oil.title}", inner, outer, (low, high), known))
+    return BallFilms(films[0], films[1], BallLaw(inner, outer, (low, high), known))
 
 
 class _Point(NamedTuple):

@@ -23,7 +23,7 @@ from ehdmaps.errors import InputError, SolverError
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.solids import STEEL, Material
-from mbs.bearings.locating.normal_law import NormalLaw, empty_table, on_rows
+from mbs.bearings.locating.normal_law import NormalLaw, PairLaw, on_rows
 
 if TYPE_CHECKING:
     from mbs.bearings.balls.response import ContactResponse
@@ -32,34 +32,19 @@ NODES = 400
 
 
 @dataclass(frozen=True, eq=False)
-class BallLaw:
-    """Laws of both contacts of a ball.
+class BallLaw(PairLaw):
+    """Laws of both contacts of a ball, see `PairLaw`.
 
     Attributes
     ----------
-    name : str
-        Name for messages and provenance.
-    inner, outer : NormalLaw
-        Laws for the kernel.
-    loads : (float, float)
-        Lowest and highest load for which both were made [N]; 0 and infinity for dry contacts.
     responses : tuple of ContactResponse
         Films of the inner and of the outer contact over frequency; none where they are not known.
     """
 
-    name: str
-    inner: NormalLaw
-    outer: NormalLaw
-    loads: tuple[float, float] = (0.0, math.inf)
     responses: tuple[ContactResponse, ...] = ()
 
-    @property
-    def dry(self) -> bool:
-        """True where neither contact has a film."""
-        return self.inner.table.size == 0 and self.outer.table.size == 0
-
     def springs_on(self, side: int, law: NormalLaw, table: FloatArray) -> FloatArray:
-        """Springs of `ContactResponse.in_time`, see `PairLaw.springs_on` of `mbs.bearings.locating.film_tables`.
+        """Springs of `ContactResponse.in_time`, see `PairLaw.springs_on`.
 
         Raises
         ------
@@ -103,13 +88,9 @@ def dry_law(
         if not (isinstance(value, int | float) and math.isfinite(value) and value >= 0.0):
             raise InputError(f"ball law, {name}: got {value!r:.60} {unit}; allowed: finite and >= 0")
     inner, outer = (
-        NormalLaw(
-            contact.coefficient, float(damping), float(damping_time), 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, empty_table()
-        )
-        for contact in geometry.contacts(material)
+        NormalLaw(contact.coefficient, float(damping), float(damping_time)) for contact in geometry.contacts(material)
     )
-    name = "hertz" if not (damping or damping_time) else f"hertz with {damping:g} N s/m and {damping_time:g} s times k"
-    return BallLaw(name, inner, outer)
+    return BallLaw(inner, outer)
 
 
 FilmCurve = Callable[[FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
@@ -160,5 +141,4 @@ def film_normal_law(contact: Ellipse, curve: FilmCurve, loads: tuple[float, floa
     width = float(nodes[1] - nodes[0])
     logs_g, logs_c = np.log(contact.approach(load)), np.log(damping)
     table = np.stack((logs_g, rise * width, logs_c, np.gradient(logs_c)), axis=1)
-    numbers = centre, scale, first, width, 0.0, 0.0, 0.0
-    return NormalLaw(contact.coefficient, 0.0, 0.0, *numbers, np.ascontiguousarray(table))
+    return NormalLaw(contact.coefficient, 0.0, 0.0, centre, scale, first, width, np.ascontiguousarray(table))

@@ -2,7 +2,8 @@
 
 | module | idea |
 |---|---|
-| `normal_law` | load, stiffness and damping of a contact over its approach, as the kernel reads them |
+| `normal_law` | load, stiffness and damping of a contact over its approach, as the kernel reads them; both of an element |
+| `film_memory` | films with memory in time: springs in series with dampers beside that law |
 | `film_tables` | these laws over the speed, for compiled runs |
 | `locating_force` | force, stiffness and damping by the pose of the inner ring; what a kind has of its own |
 | `locating_element` | the bearing of any kind in a machine, at the speed that the system has |

@@ -6,6 +6,7 @@ and blended straight between two nodes, see `mbs.bearings.locating.film_tables`.
 
 from __future__ import annotations
 
+import ctypes
 import math
 from collections.abc import Sequence
 from typing import Any, ClassVar
@@ -13,31 +14,58 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray
-from ehdmaps.kernel.record import Record, integers, numbers
-from mbs.bearings.locating.film_tables import FilmCourse
+from ehdmaps.kernel.library import checked
+from ehdmaps.kernel.record import Record, integers, numbers, room
+from mbs.bearings.locating.film_memory import FilmsInTime, no_memory, rows_of
+from mbs.bearings.locating.film_tables import FilmCourse, FilmData
 from mbs.bearings.locating.locating_element import LocatingElement, LocatingStates
 from mbs.model.blocks import Member
 
 FELT = np.array([0, 1, 2, 4, 5])
 """Displacements of its port that a bearing feels."""
 
-PLACES = tuple((name, integers) for name in ("firsts", "places", "films_of"))
-"""First of what each bearing feels, its place among all elements, its film."""
 
-COURSES = tuple((name, numbers) for name in ("starts", "turns", "offsets"))
-"""Angle of its first rolling element [rad], cage angle by that of the system, axial offset [m]."""
+class PairBlock(Record):
+    """Bearings of a kind as C takes them, one row a bearing: `ehd_pair_block`; those of kinds have fields behind these.
 
-WORKS = tuple((name, numbers) for name in ("powers", "last", "times", "works"))
-"""What it dissipates, and what the turning cage brings in [W]; what `LocatingForce.work` keeps of the last step, its
-time [s], and its work by that time [W]."""
+    Attributes
+    ----------
+    count, longest : int
+        How many bearings, and rolling elements of the one that has most.
+    firsts, places, films_of : array (count,), of int
+        First of what each feels, its place among all elements, its film.
+    counts, slices : array (count,), of int
+        How many rolling elements it has, and slices of a contact.
+    starts, turns, offsets : array (count,)
+        Angle of its first rolling element [rad], cage angle by that of the system, axial offset [m].
+    powers : array (count, 2)
+        What it dissipates, and what the turning cage brings in [W].
+    last, times, works : array (count, longest, 4), (count,), (count,)
+        What `LocatingForce.work` keeps of the last step, its time [s], and its work by that time [W].
+    memories, memory : array (count,), of int, (numbers,)
+        Where the memory of a bearing begins, < 0 without one; memory of the contacts of all bearings,
+        (Z, 2, rows, n) each, see `mbs.bearings.locating.film_memory`.
+    clock : array (2,)
+        Times at the end of the last step that was made, and of the step for which films hold [s].
+    films : FilmData
+        Laws of the contacts, and places of the steps on their tables.
+    """
 
-SHAPES: dict[str, tuple[str | int, ...]] = {
-    **dict.fromkeys(("firsts", "places", "films_of", "starts", "turns", "offsets", "times", "works"), ("count",)),
-    "powers": ("count", 2),
-    "last": ("count", "longest", 4),
-    "clock": (2,),
-}
-"""Shapes of these, and of times at the end of the last step that was made, and of the step for which films hold [s]."""
+    _fields_ = (
+        *((name, ctypes.c_int64) for name in ("count", "longest")),
+        *((name, integers) for name in ("firsts", "places", "films_of", "counts", "slices")),
+        *((name, numbers) for name in ("starts", "turns", "offsets", "powers", "last", "times", "works")),
+        ("memories", integers),
+        *((name, numbers) for name in ("memory", "clock")),
+        ("films", ctypes.POINTER(FilmData)),
+    )
+    shapes: ClassVar = {
+        **dict.fromkeys(("firsts", "places", "films_of", "counts", "slices", "memories"), ("count",)),
+        **dict.fromkeys(("starts", "turns", "offsets", "times", "works"), ("count",)),
+        "powers": ("count", 2),
+        "last": ("count", "longest", 4),
+        "clock": (2,),
+    }
 
 
 def felt_rows(element: object) -> FloatArray:
@@ -61,43 +89,53 @@ class LocatingBlock:
 
     Attributes
     ----------
-    nodes, columns : int
-        Nodes of a law over the approach; numbers of the springs of films with memory at each.
+    record, name : type of PairBlock, str
+        The struct of the kind, and how C calls it.
+    nodes : int
+        Nodes of a law over the approach.
     elements : list of LocatingElement
         The bearings.
     arrays : dict of array
         What C reads and writes, by name.
-    data : Record
+    data : PairBlock
         The same as C takes it.
     """
 
+    record: ClassVar[type[PairBlock]]
+    name: ClassVar[str]
     nodes: ClassVar[int]
-    columns: ClassVar[int]
-    data: Record
 
     def __init__(self, members: Sequence[Member]) -> None:
         self.elements: list[LocatingElement] = [member.element for member in members]
-        self.course = FilmCourse(
-            self.elements, self.nodes, self.columns if any(e.relaxes for e in self.elements) else 0
-        )
-        count = len(self.elements)
-        self.longest = max((self.size(b) for b in range(count)), default=0)
+        self.course = FilmCourse(self.elements, self.nodes)
+        sizes = [self._memory_shape(b) for b in range(len(members))]
+        memory = [math.prod(size) if one.relaxes else 0 for one, size in zip(self.elements, sizes, strict=True)]
+        firsts = np.cumsum([0, *memory])[:-1]
+        self.longest = max((size[0] for size in sizes), default=0)
+        lengths = {"count": len(members), "longest": self.longest}
         whole = {
             "firsts": [member.first for member in members],
             "places": [member.place for member in members],
             "films_of": self.course.films_of,
+            "counts": [size[0] for size in sizes],
+            "slices": [size[3] for size in sizes],
+            "memories": np.where([one.relaxes for one in self.elements], firsts, -1),
         }
         self.arrays: dict[str, Any] = {
+            **room(self.record, lengths),
             **{name: np.array(values, dtype=np.int64) for name, values in whole.items()},
             "starts": self.rows([one.start_angle for one in self.elements]),
             "turns": self.rows([one.cage_turn for one in self.elements]),
             "offsets": self.rows([one.axial_offset for one in self.elements]),
-            "powers": np.zeros((count, 2)),
-            "last": np.zeros((count, self.longest, 4)),
-            "times": np.zeros(count),
-            "works": np.zeros(count),
             "clock": np.array([0.0, math.nan]),
+            "memory": np.zeros(sum(memory)),
         }
+        self.arrays |= self.own()
+        self.data = checked(self.record, self.name)(**lengths, films=self.course.data, **self.arrays)
+
+    def own(self) -> dict[str, Any]:
+        """Fields of the kind, by name; what is left out of the arrays is zero."""
+        raise NotImplementedError
 
     def size(self, b: int) -> int:
         """Number of rolling elements of a bearing."""
@@ -111,13 +149,17 @@ class LocatingBlock:
         """Energy of the dry contacts of a bearing at the last answer [J]."""
         raise NotImplementedError
 
-    def films(self, b: int) -> Any:
-        """Films with memory of a bearing after the last step."""
-        raise NotImplementedError
+    def _memory_shape(self, b: int) -> tuple[int, ...]:
+        """Lengths of the memory of the contacts of a bearing."""
+        force = self.elements[b].force
+        elements, sides, slices = force.contacts
+        return elements, sides, rows_of(len(force.shorter)), slices
 
-    def put(self, b: int, films: Any) -> None:
-        """Write films with memory of a bearing; None: they have not moved."""
-        raise NotImplementedError
+    def _memory(self, b: int) -> FloatArray:
+        """Memory of the contacts of a bearing."""
+        shape, first = self._memory_shape(b), int(self.arrays["memories"][b])
+        memory: FloatArray = self.arrays["memory"][first : first + math.prod(shape)].reshape(shape)
+        return memory
 
     def begin(self, speeds: FloatArray) -> None:
         """Find the places of the speeds [rad/s] on the tables, and the grids of these."""
@@ -143,7 +185,7 @@ class LocatingBlock:
                 dissipated=float(arrays["powers"][b, 0]),
                 driven=float(arrays["powers"][b, 1] + arrays["works"][b]),
                 stored=self.stored(b),
-                films=self.films(b) if one.relaxes else None,
+                films=FilmsInTime(self._memory(b).copy()) if one.relaxes else None,
             )
             for b, one in enumerate(self.elements)
         ]
@@ -161,4 +203,5 @@ class LocatingBlock:
             self.arrays["last"][b, : one.last.shape[0]] = one.last
             self.arrays["clock"][:] = one.time, math.nan
             if element.relaxes:
-                self.put(b, one.films)
+                force = element.force
+                self._memory(b)[:] = one.films.memory if one.films else no_memory(force.contacts, len(force.shorter))

@@ -19,6 +19,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, EhdmapsError
 from ehdmaps.units import RPM
+from mbs.bearings.locating.film_memory import FilmsInTime
 from mbs.bearings.locating.locating_force import Settled
 from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers, check_apart
 from mbs.model.findings import Cause, Finding, Gauge
@@ -293,7 +294,7 @@ class LocatingElement(OnRings):
         most = force.shape.most_travel, force.shape.most_tilt
         check_apart(self.name, pose, most, operation.time, beyond=force.beyond(pose))
         films, step = None if states is None else states.films, 0.0 if states is None else operation.time - states.time
-        force.held = None if films is None else films.held(step)
+        force.held = None if films is None else films.held(step, force.shorter)
         try:
             answer = self.evaluate(displacement, velocity, operation)
         finally:
@@ -301,7 +302,7 @@ class LocatingElement(OnRings):
         last = np.zeros((force.angles.size, 4)) if states is None else states.last.copy()
         work = force.work((conditions["inner_speed"], conditions["outer_speed"]), last)
         if self.relaxes:
-            films = force.in_time.at_rest(force) if films is None else films.after(step, force)
+            films = FilmsInTime.at_rest(force) if films is None else films.after(step, force)
         slowed = answer.damping @ velocity
         turning = turned_by(pose, answer.force + slowed) * self.cage_turn * operation.speed
         return answer, LocatingStates(

@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -96,37 +96,6 @@ class Settled(NamedTuple):
         return self.conditions["inner_speed"], self.conditions["outer_speed"]
 
 
-class FilmsInTime(Protocol):
-    """Films with memory of a bearing after a step."""
-
-    @classmethod
-    def at_rest(cls, force: Any) -> Self:
-        """Films that have not moved, at the last call of a force.
-
-        Parameters
-        ----------
-        force : LocatingForce
-            The force.
-        """
-        ...
-
-    def held(self, step: float) -> FloatArray:
-        """Numbers that contacts hold over a step [s], as `LocatingForce.held` takes them."""
-        ...
-
-    def after(self, step: float, force: Any) -> Self:
-        """Films after a step.
-
-        Parameters
-        ----------
-        step : float
-            Length of the step [s].
-        force : LocatingForce
-            The force with the films of its end, at its last call.
-        """
-        ...
-
-
 def later(module: str, name: str) -> Callable[..., Any]:
     """Make a method of a kind, whose module of `mbs.bearings` is loaded when it is called: runs do not need it.
 
@@ -160,16 +129,18 @@ class LocatingForce:
     film_loads : (float, float)
         Loads of a rolling element from which and up to which its films were made [N]; zero and infinity where it is
         dry.
-    held : array (Z, ...) or None
-        What films with memory hold over a step; None without a memory.
+    held : array (Z, 2, rows, n) or None
+        Memory of films over a step, see `mbs.bearings.locating.film_memory`; None without one.
     dry_law : LocatingForce.with_films takes it
         Law where nothing rolls.
     same_films : object
         Key of its contacts, whatever its clearance, and which way it stands.
     of_points : bool
         Whether contacts are points, else lines in slices.
-    in_time : type of FilmsInTime
-        Class of its films with memory.
+    slices : int
+        Slices of a contact, 1 of points.
+    shorter : tuple of float
+        Times of the springs of a contact with memory over the longest, see `mbs.bearings.locating.film_memory`.
     gauge : callable
         Loads at rest to what its contacts feel, `mbs.model.findings.Gauge`.
     felt : callable
@@ -188,11 +159,12 @@ class LocatingForce:
 
     rolling_element: ClassVar[str]
     of_points: ClassVar[bool] = False
-    in_time: ClassVar[type[FilmsInTime]]
+    shorter: ClassVar[tuple[float, ...]]
     gauge: ClassVar[Callable[..., Any]]
     felt: ClassVar[Callable[..., Any]]
     relaxation: ClassVar[Callable[..., Any]]
     condensed: ClassVar[Callable[..., Any]]
+    slices: int = 1
     dry_law: Any
     same_films: Any
     geometry: Any
@@ -315,6 +287,21 @@ class LocatingForce:
         ----------
         material : Material
             Material of the elements.
+        """
+        raise NotImplementedError
+
+    @property
+    def contacts(self) -> tuple[int, int, int]:
+        """Contacts of all elements: Z, 2, and slices of each."""
+        return self.angles.size, 2, self.slices
+
+    def go_on(self, memory: FloatArray) -> None:
+        """Bring films with memory to the end of a step, at which the last call was.
+
+        Parameters
+        ----------
+        memory : array (Z, 2, rows, n)
+            Memory of all contacts over the step, see `mbs.bearings.locating.film_memory`; written.
         """
         raise NotImplementedError
 

@@ -9,6 +9,8 @@ import ctypes
 import functools
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -20,8 +22,8 @@ from ehdmaps.kernel.record import Record, numbers
 STEP = 1e-10
 """Step of the approach, either way, by which laws are differentiated [m]."""
 
-HELD = 3
-"""Numbers that a contact with memory holds over a step."""
+
+_NO_ROWS = np.zeros((0, 4))
 
 
 class NormalLaw(NamedTuple):
@@ -35,24 +37,18 @@ class NormalLaw(NamedTuple):
         Constant part of c while there is load [N s/m], and the part in proportion to the stiffness [s].
     centre, scale, first, step : float
         Table of g: z = asinh((approach - centre)/scale), its first node and the distance of nodes.
-    held, spring, at : float
-        Force [N] and spring [N/m] of a film with memory beside its rest, by the approach beyond `at` [m], over a step,
-        see `mbs.bearings.balls.ball_memory`; without a spring it has none.
     table : array (nodes, 4)
         ln g and its slope by node, ln c and its slope; none for a dry contact.
     """
 
     coefficient: float
-    damping: float
-    damping_time: float
-    centre: float
-    scale: float
-    first: float
-    step: float
-    held: float
-    spring: float
-    at: float
-    table: FloatArray
+    damping: float = 0.0
+    damping_time: float = 0.0
+    centre: float = 0.0
+    scale: float = 1.0
+    first: float = 0.0
+    step: float = 1.0
+    table: FloatArray = _NO_ROWS
 
 
 class LawData(Record):
@@ -95,7 +91,7 @@ def _approach() -> Callable[..., float]:
     return function("ehd_pair_approach", ctypes.c_void_p, number, number, result=number)
 
 
-def contacts_at(law: NormalLaw, approach: FloatArray) -> FloatArray:
+def contacts_at(law: NormalLaw, approach: FloatArray, held: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> FloatArray:
     """Load [N], stiffness [N/m] and damping [N s/m] of contacts, shape (3, ...); of the end of a step with memory.
 
     Parameters
@@ -104,11 +100,14 @@ def contacts_at(law: NormalLaw, approach: FloatArray) -> FloatArray:
         Their law.
     approach : array (...)
         Approaches [m].
+    held : (float, float, float)
+        Force [N] and spring [N/m] of films with memory beside their rest over a step, by the approach beyond the third
+        number [m]; without a spring they have none.
     """
     data, found = law_data(law), np.empty((approach.size, 3))
     places = np.ascontiguousarray(approach, dtype=np.float64)
-    held = np.array([law.held, law.spring, law.at])
-    _contacts()(data.address, places.size, places.ctypes.data, held.ctypes.data, found.ctypes.data)
+    over = np.array(held)
+    _contacts()(data.address, places.size, places.ctypes.data, over.ctypes.data, found.ctypes.data)
     return np.ascontiguousarray(found.T).reshape(3, *approach.shape)
 
 
@@ -167,6 +166,51 @@ def on_rows(law: NormalLaw, table: FloatArray) -> tuple[FloatArray, FloatArray, 
     return approach, law.coefficient * np.exp(1.5 * table[:, 0]), np.exp(table[:, 2])
 
 
-def empty_table() -> FloatArray:
-    """Table of a dry contact."""
-    return np.zeros((0, 4))
+@dataclass(frozen=True, eq=False)
+class PairLaw:
+    """Laws of the inner and the outer contact of a rolling element at one speed; kinds inherit from it.
+
+    Attributes
+    ----------
+    inner, outer : NormalLaw
+        Laws for the kernel; without tables for dry contacts.
+    loads : (float, float)
+        Lowest and highest load for which both were made [N]; 0 and infinity for dry contacts.
+    """
+
+    inner: NormalLaw
+    outer: NormalLaw
+    loads: tuple[float, float] = (0.0, math.inf)
+
+    @property
+    def sides(self) -> tuple[NormalLaw, NormalLaw]:
+        """Inner and outer."""
+        return self.inner, self.outer
+
+    @property
+    def dry(self) -> bool:
+        """Sign of contacts without films."""
+        return self.inner.table.size == 0 and self.outer.table.size == 0
+
+    @cached_property
+    def springs(self) -> tuple[FloatArray, FloatArray]:
+        """Springs of films with memory at the rows of both tables, see `springs_on`; none of dry contacts."""
+        inner, outer = (
+            self.springs_on(side, law, law.table) if law.table.size else np.zeros((0, 1))
+            for side, law in enumerate(self.sides)
+        )
+        return inner, outer
+
+    def springs_on(self, side: int, law: NormalLaw, table: FloatArray) -> FloatArray:
+        """Springs of films with memory [N/m] at the rows of a table, and the longest of their times [s], (rows, r + 1).
+
+        Parameters
+        ----------
+        side : int
+            0 the inner contact.
+        law : NormalLaw
+            Law of the table.
+        table : array (rows, 4)
+            The table.
+        """
+        raise NotImplementedError

@@ -3,7 +3,6 @@
 =====================  ================================================================================================
 `kernel_structs`       lengths and laws of a bearing; the same for the kernel in C, and its functions: taper.h
 `tapered_bearing`      the force; loads of the rollers, energy of dry contacts, the work of speed
-`tapered_memory`       films with memory in time
 `rollers_in_balance`   small motions: films with memory in linear analyses, errors of the law
 `tapered_block`        the bearings of a compiled run
 `line_film`            films of both raceways at one speed as tables for the kernel

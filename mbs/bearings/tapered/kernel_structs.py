@@ -20,10 +20,6 @@ RIB_NUMBERS = 6
 PLACE, RING, FIRST_RIB, FIRST_SHARE, COLUMNS = slice(9, 12), slice(12, 15), 15, 19, 49
 """Places of numbers that are kept of a roller, and how many there are: `ehd_taper_roller` in taper.h."""
 
-MEMORY = 7
-"""Rows of the memory of the slices of a line, see taper.h: what they hold over a step, and the part of f that is left
-after it; f [N], K [N/m] and theta [s] of a whole roller at its beginning."""
-
 ANSWER = 78
 """Numbers of an answer: force (6,), stiffness and damping (6, 6) each."""
 
@@ -95,7 +91,7 @@ class RollerLaws(NamedTuple):
     cup_film, cone_film : NormalLaw
         Tables of a whole roller with films; without a table for dry lines.
     relaxes : bool
-        Whether films have a memory over a step, see `mbs.bearings.tapered.tapered_memory`.
+        Whether films have a memory over a step, see `mbs.bearings.locating.film_memory`.
     """
 
     cup: float
@@ -138,21 +134,6 @@ class TaperedData(Record):
     }
 
 
-class LineSprings(Record):
-    """Springs of films with memory of cone and cup, (rows, 2) each, ``ehd_taper_springs``.
-
-    They are K [N/m] and theta [s] of a whole roller; and those at another speed, with their weight.
-    """
-
-    _fields_: ClassVar = [
-        ("cone", numbers),
-        ("cup", numbers),
-        ("cone_other", numbers),
-        ("cup_other", numbers),
-        ("weight", c_double),
-    ]
-
-
 class _Roller(Record):
     """A roller, ``ehd_taper_roller``; Python has it as a row of numbers."""
 
@@ -172,16 +153,13 @@ class Functions(NamedTuple):
     ----------
     force : callable
         Data, laws, pose, cage angle, loads, memory, rollers and answer; how many rollers carry, or what is wrong.
-    hold : callable
-        Rollers, slices, a step, memory.
     go_on : callable
-        Data, laws, springs, rollers, memory.
+        Data, laws, springs, rollers, room for approaches of slices, memory.
     speed_work : callable
         How many rollers, rollers, loads and places of the last call; the work [J].
     """
 
     force: Callable[..., int]
-    hold: Callable[..., None]
     go_on: Callable[..., None]
     speed_work: Callable[..., float]
 
@@ -191,14 +169,12 @@ def functions() -> Functions:
     """Return the functions, after structs were compared."""
     checked(LawData, "ehd_pair_law")
     checked(TaperedData, "ehd_taper_data")
-    checked(LineSprings, "ehd_taper_springs")
     checked(_Roller, "ehd_taper_roller")
     checked(_Answer, "ehd_taper_answer")
     place = c_void_p
     return Functions(
         function("ehd_taper_force", place, place, place, c_double, place, place, place, place),
-        function("ehd_taper_hold", c_int64, c_int64, c_double, place, result=None),
-        function("ehd_taper_go_on", place, place, place, place, place, result=None),
+        function("ehd_taper_go_on", *6 * (place,), result=None),
         function("ehd_taper_speed_work", c_int64, place, place, place, result=c_double),
     )
 

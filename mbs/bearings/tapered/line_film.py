@@ -7,9 +7,7 @@ Radius and speed grow towards the large end, by some 5 % at its very end, and fi
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +16,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
-from mbs.bearings.locating.normal_law import NormalLaw, empty_table, on_rows
+from mbs.bearings.locating.normal_law import NormalLaw, PairLaw, on_rows
 
 if TYPE_CHECKING:
     from ehdmaps.maps.law import ContactLaw, LawAtPoint
@@ -36,37 +34,16 @@ _TRIED, _ZOOMS = 65, 10
 
 
 @dataclass(frozen=True, eq=False)
-class LineFilms:
-    """Laws of both lines of a roller at one speed.
+class LineFilms(PairLaw):
+    """Laws of both lines of a whole roller at cone and cup at one speed, see `PairLaw`.
 
     Attributes
     ----------
-    inner, outer : NormalLaw
-        Laws of the whole roller at cone and cup; without tables for dry lines.
-    loads : (float, float)
-        Lowest and highest load of a roller for which both were made [N]; 0 and infinity for dry lines.
     points : tuple of LawAtPoint
         Laws of which both were made, inner and outer; none for dry lines.
     """
 
-    inner: NormalLaw
-    outer: NormalLaw
-    loads: tuple[float, float] = (0.0, math.inf)
     points: tuple[LawAtPoint, ...] = ()
-
-    @property
-    def dry(self) -> bool:
-        """True where neither line has a film."""
-        return self.inner.table.size == 0 and self.outer.table.size == 0
-
-    @cached_property
-    def springs(self) -> tuple[FloatArray, FloatArray]:
-        """K and theta of films with memory at the rows of both tables, (rows, 2) each, see `springs_on`."""
-        inner, outer = (
-            self.springs_on(side, law, law.table) if law.table.size else np.zeros((0, 2))
-            for side, law in enumerate((self.inner, self.outer))
-        )
-        return inner, outer
 
     def springs_on(self, side: int, law: NormalLaw, table: FloatArray) -> FloatArray:
         """K [N/m] and theta [s] of a spring in series with the damper of slow motion, see `PairLaw.springs_on`."""
@@ -82,8 +59,7 @@ class LineFilms:
         return np.column_stack([np.where(relaxes, damping / whole, 0.0), whole])
 
 
-_DRY = NormalLaw(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, empty_table())
-DRY_LINES = LineFilms(_DRY, _DRY)
+DRY_LINES = LineFilms(NormalLaw(1.0), NormalLaw(1.0))
 """Lines without films."""
 
 
@@ -181,4 +157,4 @@ def line_film(law: ContactLaw, length: float, entrainment_speed: float, temperat
     rise = (2.0 / 3.0) * k / w * KNEE * np.cosh(nodes) * width
     logs = np.log(c)
     table = np.stack((np.log(w) * (2.0 / 3.0), rise, logs, np.gradient(logs)), axis=1)
-    return NormalLaw(1.0, 0.0, 0.0, 0.0, KNEE, first, width, 0.0, 0.0, 0.0, np.ascontiguousarray(table))
+    return NormalLaw(1.0, 0.0, 0.0, 0.0, KNEE, first, width, np.ascontiguousarray(table))

@@ -43,16 +43,15 @@ from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.surface import iso_profile
 from mbs.bearings.laws import roller_coefficient
+from mbs.bearings.locating.film_memory import rows_of, springs_of
 from mbs.bearings.locating.locating_force import Loads, LocatingForce, directions, later
 from mbs.bearings.locating.normal_law import contacts_at
 from mbs.bearings.tapered.kernel_structs import (
     ANSWER,
     COLUMNS,
     FIRST_RIB,
-    MEMORY,
     PLACE,
     RING,
-    LineSprings,
     Ribs,
     RollerLaws,
     TaperedShape,
@@ -61,7 +60,6 @@ from mbs.bearings.tapered.kernel_structs import (
     functions,
 )
 from mbs.bearings.tapered.line_film import DRY_LINES, LineFilms, cylinder_of
-from mbs.bearings.tapered.tapered_memory import FilmsOfRollers
 
 if TYPE_CHECKING:
     from mbs.life import ReferenceLife
@@ -129,7 +127,7 @@ class TaperedForce(LocatingForce):
     Attributes
     ----------
     held : array (Z, 2, MEMORY, n) or None
-        What slices of films with memory hold over a step, see `mbs.bearings.tapered.tapered_memory`.
+        What slices of films with memory hold over a step, see `mbs.bearings.locating.film_memory`.
 
     Raises
     ------
@@ -145,7 +143,7 @@ class TaperedForce(LocatingForce):
     """
 
     rolling_element = "roller"
-    in_time, dry_law = FilmsOfRollers, DRY_LINES
+    shorter, dry_law = (1.0,), DRY_LINES
     gauge = later("tapered.roller_findings", "roller_gauge")
     felt = later("tapered.roller_report", "roller_contacts")
     relaxation = later("tapered.rollers_in_balance", "line_relaxation")
@@ -208,7 +206,7 @@ class TaperedForce(LocatingForce):
         single = 2.0 ** (10.0 / 9.0) * roller_coefficient(length, material)
         self.films = films
         self.laws = RollerLaws(single, single, self.damping, self.damping_time, films.outer, films.inner, False)
-        self.angles, self._way = places, way
+        self.angles, self.slices, self._way = places, slices, way
         self._data, self._kernel = data_of(self.shape, self.laws), functions().force
         self._begin()
 
@@ -305,22 +303,15 @@ class TaperedForce(LocatingForce):
         """See `LocatingForce.stored`."""
         return dry_energy(self.laws, self.shape, self._rollers)
 
-    def go_on(self, springs: LineSprings, memory: FloatArray) -> None:
-        """Bring films with memory to the end of a step, at which the last call was.
-
-        Parameters
-        ----------
-        springs : LineSprings
-            Springs of the films there.
-        memory : array (Z, 2, MEMORY, n)
-            What slices of cone and cup held over the step, see `mbs.bearings.tapered.tapered_memory`; written.
-        """
-        kept = self._room(memory)
-        functions().go_on(*self._places[0][:2], springs.address, self._places[2][0], kept)
+    def go_on(self, memory: FloatArray) -> None:
+        """See `LocatingForce.go_on`."""
+        springs, approaches = springs_of(self.films, self.shorter), np.zeros(self.slices)
+        given = self._places[0][:2], (springs.address, self._places[2][0], approaches.ctypes.data, self._room(memory))
+        functions().go_on(*given[0], *given[1])
 
     def _room(self, memory: FloatArray) -> int:
         """Address of the memory of all slices."""
-        wanted = (self.geometry.rollers, 2, MEMORY, self.positions.size)
+        wanted = (*self.contacts[:2], rows_of(len(self.shorter)), self.slices)
         if memory.shape != wanted:
             raise InputError(f"{self.geometry.kind}, memory: got an array of shape {memory.shape}; allowed: {wanted}")
         return address(memory, self._rollers.dtype, "memory of rollers")

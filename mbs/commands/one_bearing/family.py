@@ -18,7 +18,7 @@ from mbs.scene.contact_laws import Damper
 
 if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
-    from mbs.bearings.locating.film_tables import PairLaw
+    from mbs.bearings.locating.normal_law import PairLaw
     from mbs.commands.one_bearing.linear_files import Oscillating
     from mbs.exports.one_bearing.kind import ExportKind
 

@@ -13,7 +13,7 @@ from mbs.output.one_bearing.kind import Description
 from mbs.output.one_bearing.table import heading
 
 if TYPE_CHECKING:
-    from mbs.bearings.locating.film_tables import PairLaw
+    from mbs.bearings.locating.normal_law import PairLaw
     from mbs.commands.one_bearing.family import Family
     from mbs.exports.one_bearing.speed_laws import SpeedLaws
 

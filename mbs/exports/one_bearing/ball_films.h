@@ -1,8 +1,6 @@
 /* Films with memory of all contacts: what they have kept of the steps before; begun by ehd_films_begin. */
 typedef struct ehd_films {
-    double force[EHD_BALLS][2][3];  /* of their springs, inner and outer contact [N] */
-    double spring[EHD_BALLS][2][4]; /* stiffness [N/m], and the longest of their times [s] */
-    double approach[EHD_BALLS][2];  /* at the last step [m] */
+    double memory[EHD_BALLS][2][16]; /* of inner and outer contact, rows as of EHD_PAIR_MEMORY in the source */
 } ehd_films;
 
 /* Films at rest, with the balls of a call of ehd_bearing_call. */

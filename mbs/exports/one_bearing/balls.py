@@ -50,7 +50,6 @@ BALLS = ExportKind(
     element="ball",
     files="ball",
     kernel=("ball/ball.h", "ball/ball_balance.c", "ball/ball_bearing.c"),
-    film_kernel="ball/ball_films.c",
     mirrored=lambda geometry: geometry.contact_angle < 0.0,
     public=_public,
     private=_private,

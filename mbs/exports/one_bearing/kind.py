@@ -6,8 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from mbs.bearings.locating.film_tables import PairLaw
-from mbs.bearings.locating.normal_law import NormalLaw
+from mbs.bearings.locating.normal_law import NormalLaw, PairLaw
 from mbs.exports.one_bearing.speed_laws import STEP, SpeedLaws, dry_speed_laws, film_speed_laws
 
 
@@ -60,7 +59,6 @@ class ExportKind:
     element: str
     files: str
     kernel: tuple[str, ...]
-    film_kernel: str
     mirrored: Callable[[Any], bool]
     public: Callable[[Any], str]
     private: Callable[[Any], str]
@@ -70,6 +68,7 @@ class ExportKind:
     motion: tuple[str, ...]
     slow: str
     memory: str
+    film_kernel: tuple[str, ...] = ()
     own_words: Mapping[str, str] = field(default_factory=dict)
     play_name: str = "clearance"
     dry_approach: Callable[[Any], Callable[[float], float]] | None = None

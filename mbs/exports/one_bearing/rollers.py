@@ -10,7 +10,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.exports.c.text import array, define, number
-from mbs.bearings.locating.normal_law import NormalLaw, empty_table
+from mbs.bearings.locating.normal_law import NormalLaw
 from mbs.bearings.tapered.kernel_structs import RIB_NUMBERS, RollerLaws, rib_rows
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.exports.one_bearing.kind import ExportKind
@@ -23,10 +23,7 @@ _KERNEL = (
 def _dry(force: TaperedForce) -> tuple[NormalLaw, NormalLaw]:
     """Dry laws of both lines."""
     laws = force.laws
-    inner, outer = (
-        NormalLaw(c, laws.damping, laws.damping_time, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, empty_table())
-        for c in (laws.cone, laws.cup)
-    )
+    inner, outer = (NormalLaw(c, laws.damping, laws.damping_time) for c in (laws.cone, laws.cup))
     return inner, outer
 
 
@@ -102,7 +99,7 @@ TAPERED = ExportKind(
     element="roller",
     files="tapered",
     kernel=_KERNEL,
-    film_kernel="taper/taper_films.c",
+    film_kernel=("taper/taper_films.c",),
     mirrored=lambda geometry: geometry.contact_angle < 0.0,
     public=_public,
     private=_private,

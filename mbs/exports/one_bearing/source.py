@@ -111,7 +111,7 @@ def source_texts(
         )
     speeds, memory = () if laws.dry else ("pair/pair_speeds.c",), ("pair/pair_memory.c",) if laws.memory else ()
     kernel = ("numbers.h", "pair/pair_law.h", "pair/pair_law.c", *speeds, *memory, *kind.kernel)
-    kernel = (*kernel, kind.film_kernel) if laws.memory else kernel
+    kernel = (*kernel, *kind.film_kernel) if laws.memory else kernel
     bodies = (f"{kind.files}_bearing", *([f"{kind.files}_films"] if laws.memory else []))
     banner, guard = comment(header), "EHD_BEARING_H"
     top = [

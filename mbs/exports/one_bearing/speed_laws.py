@@ -17,9 +17,9 @@ from functools import cached_property
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from mbs.bearings.balls.laws import NODES, BallLaw
-from mbs.bearings.locating.film_tables import PairLaw, on_grid
-from mbs.bearings.locating.normal_law import NormalLaw, contact, load_approach
+from mbs.bearings.balls.laws import NODES
+from mbs.bearings.locating.film_tables import on_grid
+from mbs.bearings.locating.normal_law import NormalLaw, PairLaw, contact, load_approach
 
 STEP = 0.2
 """Largest distance of two speeds in ln u: with it loads are right within some 1e-4 between them."""
@@ -82,7 +82,7 @@ class SpeedLaws:
         count = self.speeds.size
         return float((count - 1) / math.log(self.speeds[-1] / self.speeds[0])) if count > 1 else 0.0
 
-    def at(self, entrainment_speed: float) -> BallLaw:
+    def at(self, entrainment_speed: float) -> PairLaw:
         """Laws at a speed, as the C has them.
 
         Parameters
@@ -91,7 +91,7 @@ class SpeedLaws:
             Speed [m/s], of either sign; held at the ends of the table.
         """
         if self.dry:
-            return BallLaw("dry", self.inner, self.outer)
+            return PairLaw(self.inner, self.outer)
         speed = min(max(abs(entrainment_speed), float(self.speeds[0])), float(self.speeds[-1]))
         first, weights = _weights(math.log(speed / self.speeds[0]) * self.per_log, self.speeds.size)
         chosen = slice(first, first + weights.size)
@@ -100,7 +100,7 @@ class SpeedLaws:
             side._replace(centre=float(place[0]), scale=float(place[1]), table=np.ascontiguousarray(table))
             for side, table, place in zip((self.inner, self.outer), tables, places, strict=True)
         )
-        return BallLaw("films", inner, outer, (0.0, self.highest))
+        return PairLaw(inner, outer, (0.0, self.highest))
 
 
 def dry_speed_laws(inner: NormalLaw, outer: NormalLaw) -> SpeedLaws:

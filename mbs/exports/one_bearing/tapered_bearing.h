@@ -48,7 +48,7 @@ typedef struct ehd_rollers {
     ehd_roller roller[EHD_ROLLERS];
     double own[EHD_ROLLERS][49]; /* what the next call starts from */
 #if EHD_MEMORY
-    double held[EHD_ROLLERS][2][7][EHD_SLICES]; /* what the films of the slices of cone and cup hold over a step */
+    double held[EHD_ROLLERS][2][8][EHD_SLICES]; /* what the films of the slices of cone and cup hold over a step */
 #endif
 } ehd_rollers;
 

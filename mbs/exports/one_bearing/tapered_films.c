@@ -8,8 +8,9 @@ size_t ehd_films_size(void) { return sizeof(ehd_films); }
 static void go_on(const ehd_law *law, const ehd_rollers *rollers, double *memory) {
     const double *inner = &law->inner.springs[0][0], *outer = &law->outer.springs[0][0];
     const ehd_pair_law pair[2] = {pair_of(&law->inner), pair_of(&law->outer)};
-    const ehd_taper_springs springs = {{inner, outer}, {inner, outer}, 0.0};
-    ehd_taper_go_on(&DATA, pair, &springs, (const ehd_taper_roller *)rollers->own, memory);
+    const ehd_pair_springs springs = {EHD_SPRINGS, TIMES, {inner, outer}, {inner, outer}, 0.0};
+    double approaches[EHD_SLICES];
+    ehd_taper_go_on(&DATA, pair, &springs, (const ehd_taper_roller *)rollers->own, approaches, memory);
 }
 
 void ehd_films_begin(const ehd_law *law, const ehd_rollers *rollers, ehd_films *films) {
@@ -23,7 +24,7 @@ int ehd_films_look(const ehd_bearing *bearing, const ehd_law *law, ehd_rollers *
     if (!result) return EHD_BAD_ARGUMENT;
     if (!films || !rollers || !(step >= 0.0)) return no_force(result, EHD_BAD_ARGUMENT);
     memcpy(rollers->held, films->memory, sizeof rollers->held);
-    ehd_taper_hold(EHD_ROLLERS, EHD_SLICES, step, &rollers->held[0][0][0][0]);
+    ehd_pair_hold(2 * EHD_ROLLERS, EHD_SLICES, EHD_SPRINGS, TIMES, step, &rollers->held[0][0][0][0]);
     return bearing_at(bearing, law, rollers, pose, NULL, cage_angle, inner_speed, outer_speed,
                       &rollers->held[0][0][0][0], result);
 }

@@ -1,6 +1,6 @@
 /* Films with memory of all slices: what they have kept of the steps before; begun by ehd_films_begin. */
 typedef struct ehd_films {
-    double memory[EHD_ROLLERS][2][7][EHD_SLICES]; /* of cone and cup, rows as of EHD_TAPER_MEMORY in the source */
+    double memory[EHD_ROLLERS][2][8][EHD_SLICES]; /* of cone and cup, rows as of EHD_PAIR_MEMORY in the source */
 } ehd_films;
 
 /* Films at rest, with the rollers of a call of ehd_bearing_call. */

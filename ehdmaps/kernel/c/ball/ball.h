@@ -5,6 +5,9 @@
  * centre of the inner groove, v that of the ball, each (axial, radial) [m].
  * ------------------------------------------------------------------------------------------------------------------ */
 
+#define EHD_BALL_SPRINGS 3 /* of a contact with memory */
+#define EHD_BALL_MEMORY EHD_PAIR_MEMORY(EHD_BALL_SPRINGS)
+
 /* What ehd_ball_force found instead of an answer. */
 enum { EHD_BALL_NOT_FINITE = -1, EHD_BALL_TOO_FAR = -2, EHD_BALL_NO_BALANCE = -3 };
 
@@ -51,7 +54,7 @@ typedef struct ehd_ball_data {
     double rest;       /* approach at the outer raceway under the centrifugal load alone [m] */
     int64_t balls;
     const double *cosine, *sine; /* (balls,): directions of the balls in the cage, y and z */
-    const double *rows;          /* (balls, 4): of its row: way, place, shift, other, see ball_bearing.c; null: one row */
-    const double *held;          /* (balls, 2, 3): what contacts with memory hold over a step, or null */
+    const double *rows; /* (balls, 4): of its row: way, place, shift, other, see ball_bearing.c; null: one row */
+    const double *held; /* (balls, 2, EHD_BALL_MEMORY): memory of contacts over a step, or null, see pair_law.h */
     ehd_pair_law inner, outer;
 } ehd_ball_data;

@@ -115,8 +115,8 @@ int ehd_ball_force(const ehd_ball_data *of, const double *pose, ehd_ball_start *
             on.drive.gyroscopic = part * of->drive.gyroscopic;
         }
         if (of->held) {
-            on.held_inner = of->held + 6 * j;
-            on.held_outer = of->held + 6 * j + 3;
+            on.held_inner = of->held + 2 * EHD_BALL_MEMORY * j;
+            on.held_outer = of->held + (2 * j + 1) * EHD_BALL_MEMORY;
         }
         if (!ball_place(&on, share, &start[j], ball)) return EHD_BALL_NO_BALANCE;
         if (ball->load[0] <= 0.0) continue;

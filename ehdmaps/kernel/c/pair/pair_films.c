@@ -2,19 +2,19 @@
  * Laws of contacts over the speed of a run: at nodes, on one grid of approaches, blended straight between two nodes
  * ------------------------------------------------------------------------------------------------------------------ */
 
-#define PAIR_NUMBERS 10 /* of a law beside its table; the last three are unused */
+#define PAIR_NUMBERS 7 /* of a law beside its table */
 
 /* Laws of some films, both contacts each, at the nodes of a window of speeds; those in use, which pair_blend writes. */
 typedef struct ehd_pair_films {
     int64_t films, slots, rows, columns; /* columns: springs of a contact and their time; 0 without memory */
     const double *tables;                /* (films, slots, 2, rows, 4): inner and outer contact */
-    const double *numbers;               /* (films, slots, 2, 10): fields of ehd_pair_law in their order */
+    const double *numbers;               /* (films, slots, 2, 7): fields of ehd_pair_law in their order */
     const double *most;                  /* (films, slots): highest load for which the law was made [N] */
     const int64_t *lengths;              /* (films, slots): rows that it has, none where it is dry */
-    double *table, *current, *highest;   /* (films, 2, rows, 4), (films, 2, 10), (films,): in use */
+    double *table, *current, *highest;   /* (films, 2, rows, 4), (films, 2, 7), (films,): in use */
     int64_t *length;                     /* (films,): in use */
     double *in_use;                      /* (films, 2): node and weight of those */
-    const double *springs;               /* (films, slots, 2, rows, columns) */
+    const double *springs, *shorter;     /* (films, slots, 2, rows, columns); (columns - 1,): times over the longest */
     int64_t steps;
     const int64_t *nodes;                /* (steps, films): node below the speed of each step */
     const double *weights;               /* (steps, films): part of the way to the next node */
@@ -56,24 +56,12 @@ static ehd_pair_law pair_law_of(const ehd_pair_films *of, int64_t film, int side
     return law;
 }
 
-/* Springs of a contact at a place on its table, straight between rows and nodes; held beyond the ends. Dry contacts have
- * none; out (columns,). */
-static void pair_springs_of(const ehd_pair_films *of, int64_t film, int side, double at, double *out) {
-    const int64_t last = of->length[film] - 1, columns = of->columns, node = (int64_t)of->in_use[2 * film];
-    if (last < 1) {
-        for (int64_t r = 0; r < columns; r++) out[r] = 0.0;
-        out[columns - 1] = 1.0;
-        return;
-    }
-    const double weight = of->in_use[2 * film + 1], place = least(most(at, 0.0), (double)last);
-    const int64_t cell = (int64_t)place < last - 1 ? (int64_t)place : last - 1, size = of->rows * columns;
-    const int64_t first = film * of->slots, skip = columns * cell;
-    const double *low = of->springs + size * (2 * (first + node) + side) + skip;
-    const double *high = of->springs + size * (2 * (first + pair_after(of, node, weight)) + side) + skip;
-    const double t = place - (double)cell;
-    for (int64_t r = 0; r < columns; r++) {
-        const double slow = low[r] + t * (low[r + columns] - low[r]);
-        const double fast = high[r] + t * (high[r + columns] - high[r]);
-        out[r] = slow + weight * (fast - slow);
-    }
+/* Springs of films with memory at the speed of a step. */
+static ehd_pair_springs pair_springs_of(const ehd_pair_films *of, int64_t film) {
+    const int64_t node = (int64_t)of->in_use[2 * film], size = of->rows * of->columns;
+    const double weight = of->in_use[2 * film + 1];
+    const double *slow = of->springs + 2 * size * (film * of->slots + node);
+    const double *fast = of->springs + 2 * size * (film * of->slots + pair_after(of, node, weight));
+    const ehd_pair_springs found = {of->columns - 1, of->shorter, {slow, slow + size}, {fast, fast + size}, weight};
+    return found;
 }

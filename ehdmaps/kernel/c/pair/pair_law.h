@@ -44,3 +44,20 @@ typedef struct ehd_pair_speeds {
     const double *tables[2];       /* (speeds, rows, 4) */
     const double *shares[2];       /* (speeds, rows, springs + 1): parts of the damping, and ln of the longest time */
 } ehd_pair_speeds;
+
+/* Springs in series with dampers of films with memory, at the rows of the tables of the inner and the outer contact,
+ * (rows, count + 1): stiffness [N/m], and the longest of their times [s]; those of another speed, and the part of the way
+ * to them; times over the longest one (count,). */
+typedef struct ehd_pair_springs {
+    int64_t count;
+    const double *shorter, *springs[2], *others[2];
+    double weight;
+} ehd_pair_springs;
+
+/* Rows of the memory of contacts that stand side by side, each n numbers: points, n = 1, or the slices of a line. Over a
+ * step they hold a force [N] and a spring [N/m] at an approach [m]. Behind the longest time [s] four rows follow for each
+ * spring: the part of its force that is left at the end of the step and its spring of the end, and force and stiffness of
+ * its beginning. */
+enum { EHD_PAIR_PULL, EHD_PAIR_SPRING, EHD_PAIR_AT, EHD_PAIR_TIME, EHD_PAIR_HEAD };
+enum { EHD_PAIR_LEFT, EHD_PAIR_OVER, EHD_PAIR_FORCE, EHD_PAIR_STIFFNESS, EHD_PAIR_EACH };
+#define EHD_PAIR_MEMORY(springs) (EHD_PAIR_HEAD + EHD_PAIR_EACH * (springs))

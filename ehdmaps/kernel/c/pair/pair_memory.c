@@ -1,13 +1,25 @@
 /* ---------------------------------------------------------------------------------------------------------------------
- * A spring in series with a damper over a step, exact where its end moves evenly
+ * Films with memory of contacts: springs in series with dampers beside the law of rest
  *
- * Its force f follows the approach of its end, f' = K approach' - f/theta, so that over a step of h
+ * Beside the load p(approach) at rest act springs K_r in series with dampers, whose forces f_r are the states:
+ *
+ *     f_r' = K_r approach' - f_r/theta_r,    load = p + f where f = sum f_r >= 0, else f + sqrt(f^2 + p^2).
+ *
+ * The sum of the K_r theta_r is the damping of slow motion. Over a step of h in which the approach goes evenly each force
+ * is exact,
  *
  *     f <- exp(-a) f + K phi (approach - approach before),        a = h/theta, phi = (1 - exp(-a))/a,
  *
- * with K and theta of the beginning of the step. Between two steps K follows the load: where it falls f falls in
- * proportion, where it rises f stays. Both take energy away.
+ * with K and theta of the beginning of the step, so that p gets a constant force and a spring, see pair_law.c, and a
+ * balance stays that of a convex potential. Between two steps K follows the load: where it falls f falls in proportion,
+ * where it rises f stays. Both take energy away.
+ *
+ * K and theta are read from tables over the approach with the rows of the laws, straight between them; beyond the ends
+ * K stays, and theta follows the damping.
  * ------------------------------------------------------------------------------------------------------------------ */
+
+#define PAIR_SHORTEST 1e-30 /* shortest theta [s]: below any step */
+#define PAIR_MOST_SPRINGS 3
 
 #define PAIR_SHORT 0.25 /* h/theta below which 1 - exp(-a) is its series, right to 1e-15 */
 
@@ -31,8 +43,72 @@ EHD_INLINE double pair_gone_on(double force, double left, double pushed, double 
     return after < spring ? found * after / spring : found;
 }
 
-void ehd_pair_over_step(double step, double spring, double time, double *out) { pair_over_step(step, spring, time, out); }
+/* What a line of n contacts holds over a step; as below, with a number of springs that compilers know. */
+EHD_INLINE void pair_hold_line(int64_t n, int64_t springs, const double *shorter, double step, double *memory) {
+    double *pull = memory + EHD_PAIR_PULL * n, *spring = memory + EHD_PAIR_SPRING * n;
+    const double *time = memory + EHD_PAIR_TIME * n;
+    for (int64_t r = 0; r < springs; r++) {
+        double *own = memory + (EHD_PAIR_HEAD + EHD_PAIR_EACH * r) * n;
+        for (int64_t i = 0; i < n; i++) {
+            double found[2];
+            pair_over_step(step, own[EHD_PAIR_STIFFNESS * n + i], time[i] * shorter[r], found);
+            own[EHD_PAIR_LEFT * n + i] = found[0];
+            own[EHD_PAIR_OVER * n + i] = found[1];
+            const double pulled = found[0] * own[EHD_PAIR_FORCE * n + i];
+            pull[i] = r > 0 ? pull[i] + pulled : pulled;
+            spring[i] = r > 0 ? spring[i] + found[1] : found[1];
+        }
+    }
+}
 
-double ehd_pair_gone_on(double force, double left, double pushed, double spring, double after) {
-    return pair_gone_on(force, left, pushed, spring, after);
+/* Write what contacts hold over a step [s], >= 0: memory (lines, EHD_PAIR_MEMORY(springs), n). */
+void ehd_pair_hold(int64_t lines, int64_t n, int64_t springs, const double *shorter, double step, double *memory) {
+    for (int64_t line = 0; line < lines; line++, memory += EHD_PAIR_MEMORY(springs) * n) {
+        if (springs == 1)
+            pair_hold_line(n, 1, shorter, step, memory);
+        else if (n == 1)
+            pair_hold_line(1, springs, shorter, step, memory);
+        else
+            pair_hold_line(n, springs, shorter, step, memory);
+    }
+}
+
+/* K_r and the longest theta of a contact at an approach; out (count + 1,). */
+EHD_INLINE void pair_springs_at(const ehd_pair_law *law, const ehd_pair_springs *of, int64_t count, int side,
+                                double approach, double *out) {
+    const int64_t columns = count + 1;
+    const double last = (double)law->rows - 1.0, place = pair_place(law, approach);
+    const double held = least(most(place, 0.0), last);
+    const int64_t cell = pair_cell(law, held);
+    const double t = held - (double)cell, weight = of->weight;
+    const double *low = of->springs[side] + columns * cell, *other = of->others[side] + columns * cell;
+    for (int64_t i = 0; i < columns; i++) {
+        out[i] = low[i] + t * (low[columns + i] - low[i]);
+        if (weight > 0.0) out[i] += weight * (other[i] + t * (other[columns + i] - other[i]) - out[i]);
+    }
+    if (place != held) out[count] *= exp(law->table[4 * (place < 0.0 ? 0 : law->rows - 1) + 3] * (place - held));
+    out[count] = most(out[count], PAIR_SHORTEST);
+}
+
+/* Bring the memory of n contacts of a side, of as many springs as compilers know, to the end of the step over which they
+ * held, and to K and theta at their approaches there. A dry contact keeps no force. */
+EHD_INLINE void pair_go_on(const ehd_pair_law *law, const ehd_pair_springs *of, int64_t count, int side, int64_t n,
+                           const double *approach, double *memory) {
+    const int has_film = law->rows > 1;
+    for (int64_t i = 0; i < n; i++) {
+        double after[PAIR_MOST_SPRINGS + 1] = {0.0}, *at = memory + EHD_PAIR_AT * n + i;
+        const double moved = approach[i] - *at;
+        after[count] = 1.0;
+        if (has_film) pair_springs_at(law, of, count, side, approach[i], after);
+        for (int64_t r = 0; r < count; r++) {
+            double *own = memory + (EHD_PAIR_HEAD + EHD_PAIR_EACH * r) * n + i;
+            double *force = own + EHD_PAIR_FORCE * n, *stiffness = own + EHD_PAIR_STIFFNESS * n;
+            *force = has_film ? pair_gone_on(*force, own[EHD_PAIR_LEFT * n], own[EHD_PAIR_OVER * n] * moved, *stiffness,
+                                             after[r])
+                              : 0.0;
+            *stiffness = after[r];
+        }
+        *at = approach[i];
+        memory[EHD_PAIR_TIME * n + i] = after[count];
+    }
 }

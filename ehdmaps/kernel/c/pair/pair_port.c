@@ -41,3 +41,44 @@ static void pair_answer_port(int64_t first, double turn, const ehd_moment *at, c
     powers[0] = dissipated;
     powers[1] = pair_turned_by(pose, force) * turn * at->speed;
 }
+
+/* Bearings of a kind, one row each; rows of rolling elements are as long as the longest. The blocks of kinds begin with
+ * it. */
+typedef struct ehd_pair_block {
+    int64_t count, longest;
+    const int64_t *firsts, *places, *films_of; /* (count,): first felt, place among elements, film */
+    const int64_t *counts, *slices;            /* (count,): rolling elements; slices of a contact, 1 of points */
+    const double *starts, *turns, *offsets; /* angle of the first one [rad], cage by system, axial offset [m] */
+    double *powers;                         /* (count, 2): what it dissipates, what the turning cage brings in [W] */
+    double *last;                           /* (count, longest, 4): places and loads of the last step, see speed_work */
+    double *times, *works;                  /* (count,): its time [s], work of speed by then [W] */
+    const int64_t *memories;                /* (count,): where a bearing's memory begins; < 0 without one */
+    double *memory;                         /* memory of the contacts of all bearings, see pair_law.h */
+    double *clock;                          /* (2,): end of the last step, and of that for which they hold [s] */
+    const ehd_pair_films *films;
+} ehd_pair_block;
+
+EHD_SIZE_OF(ehd_pair_block)
+
+/* Memory of the contacts of a bearing; null without one. */
+static double *pair_memory_of(const ehd_pair_block *all, int64_t b) {
+    return all->memories[b] < 0 ? NULL : all->memory + all->memories[b];
+}
+
+/* Bring laws in use to the place of a step, and write what contacts with memory hold over it. */
+static void pair_begin(const ehd_pair_block *all, const ehd_moment *at) {
+    const ehd_pair_films *films = all->films;
+    for (int64_t film = 0; film < films->films; film++) pair_blend(films, film, at->step);
+    if (all->clock[1] == at->time) return;
+    all->clock[1] = at->time;
+    for (int64_t b = 0; b < all->count; b++)
+        if (all->memories[b] >= 0)
+            ehd_pair_hold(2 * all->counts[b], all->slices[b], films->columns - 1, films->shorter,
+                          at->time - all->clock[0], pair_memory_of(all, b));
+}
+
+/* Note the end of a step that was made. */
+static void pair_made(const ehd_pair_block *all, const ehd_moment *at) {
+    all->clock[0] = at->time;
+    all->clock[1] = NAN;
+}

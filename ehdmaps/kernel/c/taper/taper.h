@@ -53,23 +53,5 @@ typedef struct ehd_taper_answer {
     double force[6], stiffness[6][6], damping[6][6];
 } ehd_taper_answer;
 
-/* Springs and times of films with memory at the rows of the tables of cone and cup, (rows, 2): K [N/m] and theta [s] of
- * a whole roller; those of another speed, and the part of the way to them. */
-typedef struct ehd_taper_springs {
-    const double *springs[2], *others[2];
-    double weight;
-} ehd_taper_springs;
-
-/* Rows of the memory of the slices of a line, (EHD_TAPER_MEMORY, slices). Over a step they hold a force [N] and a
- * spring [N/m] at an approach [m], and the part of f that is left at its end; f [N], K [N/m] and theta [s] are those of
- * its beginning. */
-enum {
-    EHD_TAPER_PULL,
-    EHD_TAPER_SPRING,
-    EHD_TAPER_AT,
-    EHD_TAPER_LEFT,
-    EHD_TAPER_FORCE,
-    EHD_TAPER_STIFFNESS,
-    EHD_TAPER_TIME,
-    EHD_TAPER_MEMORY
-};
+#define EHD_TAPER_SPRINGS 1 /* of a slice of films with memory */
+#define EHD_TAPER_MEMORY EHD_PAIR_MEMORY(EHD_TAPER_SPRINGS)

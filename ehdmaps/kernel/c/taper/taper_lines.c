@@ -172,8 +172,8 @@ EHD_CLONES static void taper_line_sums(const taper_line *line, taper_sums *of) {
             taper_film(law, count, g, load, stiffness);
         if (line->memory) {
             const double *memory = line->memory + first;
-            taper_with_held(count, g, memory + EHD_TAPER_PULL * line->slices, memory + EHD_TAPER_SPRING * line->slices,
-                            memory + EHD_TAPER_AT * line->slices, load, stiffness);
+            taper_with_held(count, g, memory + EHD_PAIR_PULL * line->slices, memory + EHD_PAIR_SPRING * line->slices,
+                            memory + EHD_PAIR_AT * line->slices, load, stiffness);
         }
         taper_sum(count, load, stiffness, line->lever + first, sum);
     }
@@ -186,7 +186,7 @@ EHD_CLONES static void taper_line_sums(const taper_line *line, taper_sums *of) {
 /* Sums of the damping of a line whose other sums are known; slices with a spring have none of their own. */
 EHD_CLONES static void taper_line_dampers(const taper_line *line, taper_sums *of) {
     const ehd_pair_law *law = line->law;
-    const double *spring = line->memory ? line->memory + EHD_TAPER_SPRING * line->slices : NULL;
+    const double *spring = line->memory ? line->memory + EHD_PAIR_SPRING * line->slices : NULL;
     const double part = 1.0 / (double)line->slices;
     double g[TAPER_CHUNK], damping[TAPER_CHUNK], slope[TAPER_CHUNK], sum[3] = {0.0, 0.0, 0.0};
     int damped = law->rows > 0 ? !spring : law->damping > 0.0;
