@@ -2,7 +2,7 @@
 
 | module | idea |
 |---|---|
-| `normal_law` | load, stiffness and damping of a contact over its approach, as the kernel reads them; both of an element |
+| `normal_law` | load, stiffness and damping of a contact over its approach, and of both of an element, for the kernel |
 | `film_memory` | films with memory in time: springs in series with dampers beside that law |
 | `film_tables` | these laws over the speed, for compiled runs |
 | `locating_force` | force, stiffness and damping by the pose of the inner ring; what a kind has of its own |
