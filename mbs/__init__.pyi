@@ -5,6 +5,7 @@ from mbs.analyses.campbell import campbell as campbell
 from mbs.analyses.case import Case as Case
 from mbs.analyses.hammer import HammerSettings as HammerSettings
 from mbs.analyses.hammer import hammer as hammer
+from mbs.analyses.identify import identify as identify
 from mbs.analyses.lsa import LsaSettings as LsaSettings
 from mbs.analyses.lsa import lsa as lsa
 from mbs.analyses.modes import modes as modes

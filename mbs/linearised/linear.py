@@ -215,7 +215,9 @@ def state_space(balance: Equilibrium, inputs: Sequence[Input] = (), sensors: Seq
     return StateSpace(A, np.vstack([np.zeros_like(by_input), by_input, np.zeros((q, len(inputs)))]), C, D)
 
 
-def responses(balance: Equilibrium, inputs: Sequence[Input], frequencies: FloatArray) -> ComplexArray:
+def responses(
+    balance: Equilibrium, inputs: Sequence[Input], frequencies: FloatArray, decay: float = 0.0
+) -> ComplexArray:
     """Complex amplitudes of the coordinates for each input at 1 N or 1 N m, shape (frequencies, n, inputs) [m or rad].
 
     Parameters
@@ -226,8 +228,10 @@ def responses(balance: Equilibrium, inputs: Sequence[Input], frequencies: FloatA
         What excites.
     frequencies : array, shape (frequencies,)
         [Hz].
+    decay : float
+        1/tau of an exponential window on loads and motion [1/s]: the amplitudes are those at decay + i omega.
     """
-    s = np.asarray(2j * np.pi * np.asarray(frequencies), dtype=np.complex128)
+    s = np.asarray(decay + 2j * np.pi * np.asarray(frequencies), dtype=np.complex128)
     load = input_matrix(balance, inputs)
     motion = np.empty((s.size, balance.system.size, len(inputs)), dtype=np.complex128)
     for first in range(0, s.size, _AT_ONCE):
@@ -238,7 +242,11 @@ def responses(balance: Equilibrium, inputs: Sequence[Input], frequencies: FloatA
 
 
 def frequency_response(
-    balance: Equilibrium, inputs: Sequence[Input], sensors: Sequence[Sensor], frequencies: FloatArray
+    balance: Equilibrium,
+    inputs: Sequence[Input],
+    sensors: Sequence[Sensor],
+    frequencies: FloatArray,
+    decay: float = 0.0,
 ) -> ComplexArray:
     """Frequency responses, shape (frequencies, sensors, inputs) [sensor unit per N or N m].
 
@@ -250,12 +258,18 @@ def frequency_response(
         Inputs and sensors of the responses.
     frequencies : array, shape (frequencies,)
         [Hz].
+    decay : float
+        1/tau of an exponential window that loads and sensors have been through [1/s].
     """
-    return sensed(balance, sensors, frequencies, responses(balance, inputs, frequencies))
+    return sensed(balance, sensors, frequencies, responses(balance, inputs, frequencies, decay), decay)
 
 
 def sensed(
-    balance: Equilibrium, sensors: Sequence[Sensor], frequencies: FloatArray, motion: ComplexArray
+    balance: Equilibrium,
+    sensors: Sequence[Sensor],
+    frequencies: FloatArray,
+    motion: ComplexArray,
+    decay: float = 0.0,
 ) -> ComplexArray:
     """Frequency responses from the motion of the coordinates, shape (frequencies, sensors, inputs).
 
@@ -269,11 +283,13 @@ def sensed(
         [Hz].
     motion : array, shape (frequencies, n, inputs)
         What `responses` finds.
+    decay : float
+        As there.
     """
     seen = sensor_matrix(balance, sensors) @ motion
-    omega = 2.0 * np.pi * np.asarray(frequencies, dtype=np.float64)
+    s = decay + 2j * np.pi * np.asarray(frequencies, dtype=np.float64)
     orders = np.array([sensor.order for sensor in sensors])
-    result: ComplexArray = seen * ((1j * omega[:, None]) ** orders[None, :])[:, :, None]
+    result: ComplexArray = seen * (s[:, None] ** orders[None, :])[:, :, None]
     return result
 
 

@@ -176,6 +176,27 @@ def with_housing_damping(scene: Scene, factor: float) -> Scene:
     return dataclasses.replace(scene, bodies=changed)
 
 
+def with_damping_ratio(scene: Scene, body: str, ratio: float) -> Scene:
+    """The scene with another damping ratio of one shaft, or one body of finite elements.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    body : str
+        Name of the body.
+    ratio : float
+        Damping ratio of its free modes.
+    """
+    bodies = [
+        dataclasses.replace(one, damping_ratio=ratio)
+        if isinstance(one, (ShaftSpec, FlexibleSpec)) and one.name == body
+        else one
+        for one in scene.bodies
+    ]
+    return dataclasses.replace(scene, bodies=bodies)
+
+
 def with_duration(scene: Scene, duration: float) -> Scene:
     """The scene with its run-up stretched or shortened to another duration [s].
 

@@ -106,7 +106,37 @@ def read_table(path: Path) -> tuple[list[TimeChannel], FloatArray, FloatArray]:
     InputError
         With what is wrong about it.
     """
-    check_input(path, LONGEST_FILE, f"a table of numbers with names and units ({_EXAMPLE})", "record less in one file")
+    titles, values = titled_columns(path)
+    problems = Problems()
+    channels, factors = [], []
+    for column, (name, given) in enumerate(titles, start=1):
+        try:
+            recorded, unit, factor = read_unit(given, name)
+        except InputError as error:
+            problems += [f"{path}, column {column} ({name:.40}): {line}" for line in error.problems]
+            continue
+        channels.append(TimeChannel(name or f"column {column}", recorded, unit))
+        factors.append(factor)
+    problems.check()
+    return channels, np.array(factors), values
+
+
+def titled_columns(path: Path, example: str = _EXAMPLE) -> tuple[list[tuple[str, str]], FloatArray]:
+    """Name and unit of each column of a table, and its numbers, shape (rows, columns).
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    example : str
+        Line of names that it might have, for messages.
+
+    Raises
+    ------
+    InputError
+        With what is wrong about it.
+    """
+    check_input(path, LONGEST_FILE, f"a table of numbers with names and units ({example})", "record less in one file")
     head, skipped = _head(path)
     delimiter = separator(head)
     names = head.split(delimiter)
@@ -115,24 +145,18 @@ def read_table(path: Path) -> tuple[list[TimeChannel], FloatArray, FloatArray]:
     if len(names) > MOST_CHANNELS + 2:
         raise InputError(f"{path}: got {len(names)} columns; allowed: up to {MOST_CHANNELS + 2}")
     problems = Problems()
-    channels, factors = [], []
+    titles = []
     for column, text in enumerate(names, start=1):
         title = _HEAD.fullmatch(text)
         if title is None:
             problems.append(
                 f"{path}, column {column}: got {short(text.strip())} without a unit; allowed: a name and a unit, as in "
-                f"{_EXAMPLE}"
+                f"{example}"
             )
             continue
-        try:
-            recorded, unit, factor = read_unit(title["unit"], title["name"])
-        except InputError as error:
-            problems += [f"{path}, column {column} ({title['name']:.40}): {line}" for line in error.problems]
-            continue
-        channels.append(TimeChannel(title["name"] or f"column {column}", recorded, unit))
-        factors.append(factor)
+        titles.append((title["name"], title["unit"]))
     problems.check()
-    return channels, np.array(factors), _numbers(path, skipped, delimiter, len(names))
+    return titles, _numbers(path, skipped, delimiter, len(names))
 
 
 def _encoding(path: Path) -> str:

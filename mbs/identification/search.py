@@ -1,0 +1,319 @@
+"""Least squares from many starts: logarithmic residuals of what was measured, weighted by its noise.
+
+Of a response H(p) beside the measured H_m, whose complex value has the relative deviation sigma,
+
+    r = sqrt(2)/sigma ln(H(p)/H_m),
+
+both parts; of modes the logarithms of frequencies and damping ratios over their relative deviations; of what is known
+beforehand (p - p_0)/deviation. It is always ln of the ratio, never a difference of logarithms, which has a branch cut.
+
+Peaks that are far from each other do not feel each other. So starts are scored, and the best of them refined, on
+thinned lines with deviations widened to `WIDENED` first, by a robust loss, then as they are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.errors import AnalysisError, InputError
+from mbs.identification.free import Free
+from mbs.identification.machine import Machine, looked
+from mbs.identification.measured import Measured, MeasuredModes, MeasuredResponses
+from mbs.scene.scene import Scene
+
+WIDENED = 0.28
+"""Relative deviation that every line has in the first stages."""
+
+STARTS, KEPT = 24, 3
+"""Random starts that are scored, and how many of them are refined."""
+
+COARSE, FINE = 60, 400
+"""Lines of each measurement, at most, in the first stages and in the last."""
+
+STEP = 1e-4
+"""Step of differences, as a part of the range of an unknown."""
+
+_NONE = 3.0
+"""Residual of a logarithm where the machine finds no equilibrium, or has no such mode."""
+
+_FAR = 60
+"""Looks that each stage of a refinement may take for each unknown, beside those of its differences."""
+
+
+@dataclass(frozen=True, eq=False)
+class Question:
+    """What is sought, of which machine, from what.
+
+    Attributes
+    ----------
+    machine : Machine
+        The machine.
+    scene : Scene
+        Its scene, with all that is held fixed.
+    free : tuple of Free
+        Unknowns.
+    measured : tuple of MeasuredResponses or MeasuredModes
+        What was measured.
+    """
+
+    machine: Machine
+    scene: Scene
+    free: tuple[Free, ...]
+    measured: tuple[Measured, ...]
+    low: FloatArray = field(init=False)
+    width: FloatArray = field(init=False)
+
+    def __post_init__(self) -> None:
+        ends = np.array([one.ends for one in self.free])
+        object.__setattr__(self, "low", ends[:, 0])
+        object.__setattr__(self, "width", ends[:, 1] - ends[:, 0])
+
+    @property
+    def start(self) -> FloatArray:
+        """Values of the scene, as parts of their ranges."""
+        own = np.array([one.coordinate(one.start) for one in self.free])
+        return np.clip((own - self.low) / self.width, 0.0, 1.0)
+
+    def coordinates(self, parts: FloatArray) -> FloatArray:
+        """Coordinates of the search, of parts of the ranges."""
+        return np.asarray(self.low + self.width * parts)
+
+    def values(self, parts: FloatArray) -> list[float]:
+        """Values [SI], of parts of the ranges."""
+        return [one.value(x) for one, x in zip(self.free, self.coordinates(parts), strict=True)]
+
+    def thinned(self, most: int) -> Question:
+        """The question with fewer lines."""
+        return self.of([one.thinned(most) if isinstance(one, MeasuredResponses) else one for one in self.measured])
+
+    def of(self, measured: Sequence[Measured]) -> Question:
+        """The question with other measurements."""
+        return Question(self.machine, self.scene, self.free, tuple(measured))
+
+    def residuals(self, parts: FloatArray, widened: float = 0.0, scene: Scene | None = None) -> FloatArray:
+        """Residuals of all measurements, then of what is known beforehand.
+
+        Parameters
+        ----------
+        parts : array, shape (unknowns,)
+            Unknowns as parts of their ranges.
+        widened : float
+            Relative deviation that every line gets beside its own.
+        scene : Scene, optional
+            Another machine, as it is held fixed.
+        """
+        values = self.values(parts)
+        found = [residual_of(self.look(values, one, scene), one, widened) for one in self.measured]
+        return np.concatenate([*found, self.before(parts)])
+
+    def look(self, values: Sequence[float], measured: Measured, scene: Scene | None = None) -> ComplexArray | None:
+        """Logarithms of what the machine has in place of a measurement; None where it has no equilibrium."""
+        try:
+            return looked(self.machine, scene or self.scene, self.free, values, measured)
+        except (AnalysisError, InputError):
+            return None
+
+    def before(self, parts: FloatArray) -> FloatArray:
+        """Residuals of what is known beforehand."""
+        own = zip(self.free, self.coordinates(parts), strict=True)
+        return np.array([(x - one.coordinate(one.prior[0])) / one.prior[1] for one, x in own if one.prior])
+
+
+def residual_of(found: ComplexArray | None, measured: Measured, widened: float = 0.0) -> FloatArray:
+    """Residuals of a measurement, real.
+
+    Parameters
+    ----------
+    found : array of complex or None
+        Logarithms of the machine's.
+    measured : MeasuredResponses or MeasuredModes
+        What was measured.
+    widened : float
+        Relative deviation beside that of each value.
+    """
+    if isinstance(measured, MeasuredModes):
+        pairs = (
+            (measured.frequency, measured.frequency_deviation),
+            (measured.damping_ratio, measured.damping_deviation),
+        )
+        own = np.full((2, measured.frequency.size), np.nan) if found is None else found.real
+        parts = []
+        for row, (value, deviation) in zip(own, pairs, strict=True):
+            weight = 1.0 / np.hypot(deviation / value, widened)
+            apart = np.where(np.isfinite(row), row - np.log(value), _NONE)
+            parts.append(np.where(np.isfinite(weight), weight * apart, 0.0))
+        return np.concatenate(parts)
+    weights = measured.weights(widened)
+    if found is None:
+        apart = np.full(measured.response.shape, _NONE + 1j * _NONE)
+    else:
+        with np.errstate(all="ignore"):
+            # The phase of the ratio lies within half a turn.
+            apart = np.log(np.exp(found) / measured.response)
+        apart = np.where(np.isfinite(apart), apart, _NONE + 1j * _NONE)
+    return np.concatenate([(apart.real * weights).ravel(), (apart.imag * weights).ravel()])
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """The best fit.
+
+    Attributes
+    ----------
+    question : Question
+        What was sought.
+    parts : array, shape (unknowns,)
+        Unknowns found, as parts of their ranges.
+    residuals : array, shape (N,)
+        Residuals there.
+    jacobian : array, shape (N, unknowns)
+        Their derivatives by the parts.
+    costs : tuple of float
+        Cost of the fits from the best starts, rising.
+    agreed : int
+        How many of these ended at the same place.
+    stopped : bool
+        Whether the search was stopped before its end.
+    """
+
+    question: Question
+    parts: FloatArray
+    residuals: FloatArray
+    jacobian: FloatArray
+    costs: tuple[float, ...]
+    agreed: int
+    stopped: bool = False
+
+    @property
+    def values(self) -> list[float]:
+        """Values found [SI]."""
+        return self.question.values(self.parts)
+
+    @property
+    def count(self) -> int:
+        """Residuals that count."""
+        return int(np.count_nonzero(self.residuals))
+
+    @property
+    def chi2(self) -> float:
+        """Sum of the squares of the residuals over what noise alone makes of it."""
+        return float(self.residuals @ self.residuals) / max(self.count - self.parts.size, 1)
+
+
+Progress = Callable[[int, int], None]
+
+
+def search(
+    question: Question,
+    starts: int = STARTS,
+    kept: int = KEPT,
+    seed: int = 0,
+    progress: Progress = lambda done, total: None,
+) -> Fit:
+    """Find the unknowns.
+
+    Parameters
+    ----------
+    question : Question
+        What is sought.
+    starts : int
+        Random starts beside the values of the scene.
+    kept : int
+        How many of the starts are refined.
+    seed : int
+        Seed of these.
+    progress : callable
+        Told how much is done, and of how much.
+
+    Returns
+    -------
+    Fit
+        The best one. Where the search is stopped by Ctrl-C after the first fit, the best so far.
+
+    Raises
+    ------
+    AnalysisError
+        If the machine finds no equilibrium at any start.
+    """
+    rng = np.random.default_rng(seed)
+    count = len(question.free)
+    places = [question.start, *rng.uniform(0.05, 0.95, (starts, count))]
+    total = len(places) + 2 * kept
+    progress(0, total)
+    coarse, fine = question.thinned(COARSE), question.thinned(FINE)
+    scored = []
+    for k, place in enumerate(places):
+        scored.append((_score(coarse.residuals(place, WIDENED)), k))
+        progress(k + 1, total)
+    if question.machine.refused >= question.machine.looks:
+        raise AnalysisError("no equilibrium at any start: look at `mbs statics` of the scene, and at the ranges")
+    found: list[tuple[float, FloatArray]] = []
+    stopped = False
+    for n, (_, k) in enumerate(sorted(scored)[:kept]):
+        try:
+            first = _refined(coarse, places[k], WIDENED, 1.0)
+            progress(len(places) + 2 * n + 1, total)
+            second = _refined(fine, first, 0.0, 3.0)
+        except KeyboardInterrupt:
+            if not found:
+                raise
+            stopped = True
+            break
+        found.append((float(np.sum(_soft(fine.residuals(second)))), second))
+        progress(len(places) + 2 * n + 2, total)
+    found.sort(key=lambda one: one[0])
+    best = found[0][1]
+    residuals, jacobian = jacobian_at(fine, best)
+    same = sum(bool(np.max(np.abs(place - best)) < 0.02) for _, place in found)
+    return Fit(fine, best, residuals, jacobian, tuple(cost for cost, _ in found), same, stopped)
+
+
+def _soft(residuals: FloatArray) -> FloatArray:
+    """Robust squares of residuals."""
+    return np.asarray(9.0 * (np.sqrt(1.0 + (residuals / 3.0) ** 2) - 1.0))
+
+
+def _score(residuals: FloatArray) -> float:
+    """Score of a start: squares, none of which counts above 9."""
+    return float(np.sum(np.minimum(residuals**2, 9.0)))
+
+
+def _refined(question: Question, start: FloatArray, widened: float, scale: float) -> FloatArray:
+    """The unknowns at the least of the squares, from a start."""
+    found = least_squares(
+        lambda parts: question.residuals(parts, widened),
+        np.clip(start, 1e-6, 1.0 - 1e-6),
+        bounds=(0.0, 1.0),
+        loss="soft_l1",
+        f_scale=scale,
+        diff_step=STEP,
+        xtol=1e-6,
+        ftol=1e-7,
+        max_nfev=_FAR,
+    )
+    return np.asarray(found.x, dtype=np.float64)
+
+
+def jacobian_at(question: Question, parts: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Residuals, and their derivatives by the parts of the ranges.
+
+    Parameters
+    ----------
+    question : Question
+        What is sought.
+    parts : array, shape (unknowns,)
+        Unknowns as parts of their ranges.
+    """
+    residuals = question.residuals(parts)
+    columns = []
+    for k in range(parts.size):
+        step = STEP if parts[k] < 0.5 else -STEP
+        moved = parts.copy()
+        moved[k] += step
+        columns.append((question.residuals(moved) - residuals) / step)
+    return residuals, np.stack(columns, axis=1)
