@@ -5,7 +5,6 @@ from mbs.analyses.campbell import campbell as campbell
 from mbs.analyses.case import Case as Case
 from mbs.analyses.hammer import HammerSettings as HammerSettings
 from mbs.analyses.hammer import hammer as hammer
-from mbs.analyses.identify import identify as identify
 from mbs.analyses.lsa import LsaSettings as LsaSettings
 from mbs.analyses.lsa import lsa as lsa
 from mbs.analyses.modes import modes as modes
@@ -25,6 +24,7 @@ from mbs.flexible.plan import ReductionPlan as ReductionPlan
 from mbs.flexible.shaft_parts import Disc as Disc
 from mbs.flexible.shaft_parts import Section as Section
 from mbs.gears.pair import GearPair as GearPair
+from mbs.identification.identify import identify as identify
 from mbs.laboratory.variants import Variation as Variation
 from mbs.laboratory.variants import variants as variants
 from mbs.library import bearing as bearing

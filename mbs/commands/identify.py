@@ -12,19 +12,19 @@ from ehdmaps.errors import AnalysisError, InputError, Problems
 from ehdmaps.extras import lacking
 from ehdmaps.outputs import FIGURE, Output, output_problems, write_text
 from ehdmaps.units import quantity
-from mbs.analyses.identify import identify, identify_plan, would_tell
 from mbs.analyses.modes import modes
 from mbs.commands.cases import load_model
 from mbs.commands.common import Told, read_cage_angles, write
 from mbs.commands.scenes.new import NEW
 from mbs.identification.explained import MOST_CHI2
 from mbs.identification.found import Identified
+from mbs.identification.identify import identify, identify_plan, would_tell
 from mbs.identification.measured import Measured, MeasuredModes
 from mbs.identification.reading import Reading, read_measured
 from mbs.linearised.pairs import partners
 from mbs.output.band_text import bounds_text, value_text
 from mbs.output.files import RESULT
-from mbs.output.identify_text import apart_lines, found_lines, plan_lines
+from mbs.output.identified.text import apart_lines, found_lines, plan_lines
 from mbs.output.model_text import heading
 from mbs.scene.assembly import Model
 from mbs.scene.reader import read_scene

@@ -1,4 +1,4 @@
-"""What nobody knows of a machine, found from what is measured of it; in the order of the data.
+"""Unknowns of a machine, found from what is measured of it; modules in the order of the data.
 
 ===========  ======================================================================================================
 measured     frequency responses and modes of a state of the machine, with what noise leaves open of them

@@ -1,4 +1,4 @@
-"""How well unknowns are known that were found: noise by the Jacobian, and trials of what the model holds fixed.
+"""Certainty of unknowns that were found: noise by the Jacobian, and trials of what the model holds fixed.
 
 Errors of a model are larger than noise, and most of them leave no trace in what is left over: with loads 5 % off a
 clearance moves by several micrometres at an unchanged chi^2. So each assumption is changed, and the unknowns follow by
@@ -78,7 +78,7 @@ class Trial:
 
 @dataclass(frozen=True, eq=False)
 class Certainty:
-    """What is known of the unknowns, in the coordinates of the search.
+    """Knowledge of the unknowns, in the coordinates of the search.
 
     Attributes
     ----------
@@ -222,7 +222,7 @@ def _warmth(fit: Fit, scene: Scene) -> tuple[FloatArray, float]:
 
 
 def assumptions(scene: Scene, found: Sequence[str], fit: Fit) -> Iterator[Unknown]:
-    """What a model holds fixed, and the machines that it may be as well.
+    """List what a model holds fixed, and the machines that it may be as well.
 
     Parameters
     ----------

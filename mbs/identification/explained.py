@@ -1,4 +1,4 @@
-"""Whether a fit explains what was measured: channels that are wrong, and films or a constant damper.
+"""Tell whether a fit explains what was measured: channels that are wrong, and films or a constant damper.
 
 A channel of the wrong sign, in another unit, or of a hit elsewhere than stated is no noise: such a fit is refused with
 what looks wrong, and never given as a result.
@@ -26,7 +26,7 @@ MOST_CHI2 = 10.0
 """chi^2 above which a machine is not the one that was measured: wrong damping of a shaft makes 10, a cage angle 2."""
 
 SURE, GOOD = 10.0, 2.0
-"""How far the squares of two laws must be apart, and the chi^2 that the better one may have, for a law to be named."""
+"""Distance that the squares of two laws must have, and the chi^2 that the better one may have, for it to be named."""
 
 FILMS, DAMPER, NOT_TOLD = "films", "a constant damper", "not told"
 
@@ -91,7 +91,7 @@ class OtherLaw:
     time : float
         Time of the damper [s].
     count : int
-        Residuals.
+        Number of residuals.
     """
 
     films: float
@@ -101,7 +101,7 @@ class OtherLaw:
 
     @property
     def explained_by(self) -> str:
-        """Which of them explains the damping: `FILMS`, `DAMPER` or `NOT_TOLD`."""
+        """Law that explains the damping: `FILMS`, `DAMPER` or `NOT_TOLD`."""
         apart = self.count * (self.damper - self.films)
         if abs(apart) > SURE and min(self.films, self.damper) < GOOD:
             return FILMS if apart > 0.0 else DAMPER

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Identified:
-    """What was found.
+    """Unknowns of a machine that were found.
 
     Attributes
     ----------
@@ -136,9 +136,9 @@ class Identified:
 
     def plot(self) -> Figure:
         """Figure of `mbs identify --plot`: what was measured beside the machine before and after."""
-        from mbs.output.identify_plot import identify_figure
+        from mbs.output.identified.plot import identify_figure
 
-        return identify_figure(self)
+        return identify_figure(self.fit)
 
 
 def _put(file: Any, one: Free, value: float, half: float) -> None:

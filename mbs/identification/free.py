@@ -345,7 +345,7 @@ def _of_force(scene: Scene, load: Any) -> Free:
 
 
 def _relative(prior: tuple[float, float] | None) -> tuple[float, float] | None:
-    """What is known beforehand of what is searched by its logarithm."""
+    """Knowledge beforehand of what is searched by its logarithm."""
     return None if prior is None else (prior[0], prior[1] / prior[0])
 
 

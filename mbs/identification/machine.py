@@ -55,12 +55,12 @@ class Machine:
 
     @property
     def looks(self) -> int:
-        """How often it was looked at."""
+        """Number of looks at it."""
         return self._count[0]
 
     @property
     def refused(self) -> int:
-        """How many of these looks found no equilibrium."""
+        """Number of these looks that found no equilibrium."""
         return self._count[1]
 
     def balance(self, scene: Scene, speed: float) -> Equilibrium:
@@ -153,7 +153,7 @@ def changed(scene: Scene, free: Sequence[Free], values: Sequence[float]) -> Scen
     scene : Scene
         The machine.
     free : sequence of Free
-        Its unknowns.
+        Unknowns of the machine.
     values : sequence of float
         A value each [SI].
     """
@@ -172,9 +172,9 @@ def looked(
     machine : Machine
         The machine.
     scene : Scene
-        Its scene; the values below are put in.
+        Scene of the machine; the values below are put in.
     free : sequence of Free
-        Unknowns.
+        Unknowns of the machine.
     values : sequence of float
         A value each [SI].
     measured : MeasuredResponses or MeasuredModes

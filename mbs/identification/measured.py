@@ -1,4 +1,4 @@
-"""What was measured of a machine at one speed: frequency responses or modes, each with what noise leaves open."""
+"""Measurements of a machine at one speed: frequency responses or modes, each with what noise leaves open."""
 
 from __future__ import annotations
 
@@ -125,7 +125,7 @@ def assumed_deviation(response: ComplexArray) -> FloatArray:
     Parameters
     ----------
     response : array, shape (lines, rows)
-        Responses.
+        Responses in any unit.
     """
     part, floor = ASSUMED
     size = np.abs(response)
@@ -144,7 +144,7 @@ def noise_of(response: ComplexArray, coherence: FloatArray, averages: int) -> Fl
     Parameters
     ----------
     response : array, shape (lines, rows)
-        Responses.
+        Responses in any unit.
     coherence : array, shape (lines, rows)
         Ordinary coherence; NaN where it is not known.
     averages : int

@@ -1,4 +1,4 @@
-"""Which hits, sensors and speeds tell unknowns apart, by the machine's own derivatives, before anything is measured.
+"""Plan of hits, sensors and speeds that tell unknowns apart, by the machine's own derivatives.
 
 Each channel, a sensor by a hit at a speed, adds F = J'J with the noise that `measured.ASSUMED` takes; what is known
 beforehand adds its own, and so does the range of each unknown. The next channel is always that after which the ranges
@@ -63,7 +63,7 @@ class Step:
     deviation : array, shape (unknowns,)
         Standard deviations in the coordinates of the search, of noise alone.
     correlation : array, shape (unknowns, unknowns)
-        Correlations.
+        Correlations of the unknowns.
     """
 
     channel: Channel
@@ -95,9 +95,9 @@ def informations(
     machine : Machine
         The machine.
     scene : Scene
-        Its scene; derivatives are taken at its values.
+        Scene of the machine; derivatives are taken at its values.
     free : sequence of Free
-        Unknowns.
+        Unknowns of the machine.
     speeds : sequence of float
         Speeds that may be measured at [rad/s]; 0 at rest.
     frequencies : array, shape (lines,)
@@ -156,7 +156,7 @@ def plan(free: Sequence[Free], channels: dict[Channel, FloatArray], most: int = 
     Parameters
     ----------
     free : sequence of Free
-        Unknowns.
+        Unknowns of the machine.
     channels : dict of Channel to array
         What `informations` finds.
     most : int
@@ -182,7 +182,7 @@ def told_by(free: Sequence[Free], known: FloatArray, channels: dict[Channel, Flo
     Parameters
     ----------
     free : sequence of Free
-        Unknowns.
+        Unknowns of the machine.
     known : array, shape (unknowns, unknowns)
         Information that there is.
     channels : dict of Channel to array

@@ -47,16 +47,16 @@ _FAR = 60
 
 @dataclass(frozen=True, eq=False)
 class Question:
-    """What is sought, of which machine, from what.
+    """Question to the data: unknowns of a machine, and what was measured of it.
 
     Attributes
     ----------
     machine : Machine
         The machine.
     scene : Scene
-        Its scene, with all that is held fixed.
+        Scene of the machine, with all that is held fixed.
     free : tuple of Free
-        Unknowns.
+        Unknowns of the machine.
     measured : tuple of MeasuredResponses or MeasuredModes
         What was measured.
     """
@@ -112,7 +112,17 @@ class Question:
         return np.concatenate([*found, self.before(parts)])
 
     def look(self, values: Sequence[float], measured: Measured, scene: Scene | None = None) -> ComplexArray | None:
-        """Logarithms of what the machine has in place of a measurement; None where it has no equilibrium."""
+        """Logarithms of what the machine has in place of a measurement; None where it has no equilibrium.
+
+        Parameters
+        ----------
+        values : sequence of float
+            Values of the unknowns [SI].
+        measured : MeasuredResponses or MeasuredModes
+            Measurement that is looked for.
+        scene : Scene, optional
+            Another machine, as it is held fixed.
+        """
         try:
             return looked(self.machine, scene or self.scene, self.free, values, measured)
         except (AnalysisError, InputError):

@@ -284,7 +284,7 @@ def sensed(
     motion : array, shape (frequencies, n, inputs)
         What `responses` finds.
     decay : float
-        As there.
+        Decay of an exponential window, as there [1/s].
     """
     seen = sensor_matrix(balance, sensors) @ motion
     s = decay + 2j * np.pi * np.asarray(frequencies, dtype=np.float64)

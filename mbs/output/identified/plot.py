@@ -14,30 +14,30 @@ from mbs.linearised.linear import response_display
 from mbs.output.page import grid, headed
 
 if TYPE_CHECKING:
-    from mbs.identification.found import Identified
+    from mbs.identification.search import Fit
 
 MOST_ROWS = 8
 """Channels that are drawn."""
 
 
-def identify_figure(found: Identified) -> Figure:
+def identify_figure(fit: Fit) -> Figure:
     """A panel a channel, measured, before and after; modes of all speeds in one panel.
 
     Parameters
     ----------
-    found : Identified
-        The result.
+    fit : Fit
+        The best fit.
     """
-    question = found.fit.question
+    question = fit.question
     responses = [one for one in question.measured if isinstance(one, MeasuredResponses)]
     modes = [one for one in question.measured if isinstance(one, MeasuredModes)]
     rows = [(one, row) for one in responses for row in range(len(one.rows))][:MOST_ROWS]
     count = len(rows) + bool(modes)
     figure = headed(question.machine.model, "", (8.0, 1.6 + 2.1 * count), "identified")
     axes = figure.subplots(count, 1, squeeze=False)[:, 0]
-    starts = [one.start for one in found.free]
+    starts = [one.start for one in question.free]
     before = {id(one): question.look(starts, one) for one in question.measured}
-    after = {id(one): question.look(found.fit.values, one) for one in question.measured}
+    after = {id(one): question.look(fit.values, one) for one in question.measured}
     for panel, (one, row) in zip(axes, rows, strict=False):
         sensor, entry = one.rows[row]
         shown = response_display(sensor, entry)

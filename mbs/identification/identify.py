@@ -91,7 +91,7 @@ def identify(
 
 
 def _read(record: Record, scene: Scene) -> Sequence[Measured]:
-    """What is measured, from its file where it is one."""
+    """Measurements of a record, from its file where it is one."""
     if not isinstance(record, tuple):
         return [record]
     file, speed = record
@@ -176,7 +176,7 @@ def identify_plan(
     cage_angles : int
         Angles within one pitch.
     progress : callable, optional
-        As of `identify`.
+        Callable that `identify` takes, too.
 
     Raises
     ------

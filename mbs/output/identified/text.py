@@ -1,4 +1,4 @@
-"""What an identification found, in words: a table of unknowns with their bands, what is not told apart, a plan."""
+"""Result of an identification in words: a table of unknowns with their bands, what is not told apart, a plan."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def law_lines(found: Identified) -> list[str]:
 
 
 def _decided(found: Identified, place: int) -> str:
-    """What decides the band of an unknown."""
+    """Name what decides the band of an unknown."""
     sure = found.certainty
     total = max(float(sure.rise[place]), float(sure.fall[place]), 1e-300)
     parts = [(max(float(one.rise[place]), float(one.fall[place])) / total, one.name) for one in sure.trials]
@@ -109,7 +109,7 @@ def plan_lines(free: Sequence[Free], steps: Sequence[Step]) -> list[str]:
     Parameters
     ----------
     free : sequence of Free
-        Unknowns.
+        Unknowns of the machine.
     steps : sequence of Step
         The plan.
     """
@@ -126,7 +126,7 @@ def plan_lines(free: Sequence[Free], steps: Sequence[Step]) -> list[str]:
 
 
 def _known(one: Free, deviation: float) -> str:
-    """How well an unknown is known."""
+    """Deviation of an unknown in words."""
     if one.log:
         return f"{one.name} +-{100.0 * math.expm1(min(deviation, 5.0)):.2g} %"
     return f"{one.name} +-{abs(one.display.factor) * deviation:.2g} {one.display.unit}"

@@ -1,0 +1,1 @@
+"""The result of an identification for people: text and figure."""
