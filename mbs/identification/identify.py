@@ -18,7 +18,7 @@ from mbs.identification.found import Identified
 from mbs.identification.free import Free, read_free
 from mbs.identification.machine import Machine
 from mbs.identification.measured import Measured, MeasuredModes
-from mbs.identification.planning import Step, before, informations, plan, told_by
+from mbs.identification.planning import Step, before, information_of, plan, told_by
 from mbs.identification.reading import Reading, read_measured
 from mbs.identification.search import STARTS, Question, search
 from mbs.scene.assembly import Model, assemble
@@ -142,7 +142,7 @@ def would_tell(found: Identified, speeds: Sequence[float] = ()) -> Step | None:
     there = {one.speed for one in question.measured}
     asked = sorted({*(speeds or [0.0, *(0.5 * one for one in there), *there])})
     try:
-        channels = informations(machine, scene, free, asked, _lines(scene.frequencies, _highest(question.measured)))
+        channels = information_of(machine, scene, free, asked, _lines(scene.frequencies, _highest(question.measured)))
     except AnalysisError:
         return None
     done = {
@@ -192,7 +192,7 @@ def identify_plan(
     asked = tuple(dict.fromkeys(asked))
     lines = _lines(scene.frequencies, 0.0)
     machine, unknowns = _asked(model, asked, free, cage_angles, float(lines[-1]))
-    channels = informations(machine, machine.model.scene, unknowns, asked, lines, progress("speed"))
+    channels = information_of(machine, machine.model.scene, unknowns, asked, lines, progress("speed"))
     return unknowns, plan(unknowns, channels)
 
 

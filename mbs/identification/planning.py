@@ -80,7 +80,7 @@ class Step:
         return int(row), int(column), float(self.correlation[row, column])
 
 
-def informations(
+def information_of(
     machine: Machine,
     scene: Scene,
     free: Sequence[Free],
@@ -158,7 +158,7 @@ def plan(free: Sequence[Free], channels: dict[Channel, FloatArray], most: int = 
     free : sequence of Free
         Unknowns of the machine.
     channels : dict of Channel to array
-        What `informations` finds.
+        What `information_of` finds.
     most : int
         Channels at most.
     """

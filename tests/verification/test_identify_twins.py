@@ -11,7 +11,7 @@ import mbs
 from ehdmaps.errors import InputError
 from mbs.identification.certainty import APART, certainty, covariance
 from mbs.identification.explained import DAMPER, FILMS, damper
-from mbs.identification.planning import informations, plan
+from mbs.identification.planning import information_of, plan
 from mbs.identification.search import jacobian_at, search
 from mbs.scene.changes import with_loads
 from tests.cases.identify_twins import BALLS, RPM, balls
@@ -79,7 +79,7 @@ def test_frequencies_of_one_speed_tell_nothing_apart(twin) -> None:
 def test_a_plan_goes_on_until_all_is_told_apart(twin) -> None:
     scene = twin.machine.model.scene
     speeds = [0.0, 1500.0 * RPM, *(speed * RPM for speed in SPEEDS)]
-    channels = informations(twin.machine, scene, twin.free, speeds, LINES)
+    channels = information_of(twin.machine, scene, twin.free, speeds, LINES)
     steps = plan(twin.free, channels)
     sizes = np.array([step.deviation for step in steps])
     assert abs(steps[-1].closest[2]) < APART
