@@ -25,7 +25,7 @@ MATERIALS = {"steel": STEEL, "silicon nitride": SILICON_NITRIDE}
 """Materials of balls and rings by name."""
 
 _OWN = ("balls", "ball_diameter", "pitch_diameter", "inner_groove_radius", "outer_groove_radius")
-_KEYS = ("name", *_OWN, "contact_angle", "diametral_clearance", "ball_material", "ring_material")
+_KEYS = ("name", *_OWN, "contact_angle", "diametral_clearance", "preload", "ball_material", "ring_material")
 _LONGEST = 100_000
 _WIDEST = 1e-2
 
@@ -120,6 +120,7 @@ def read_balls(section: Table) -> BallGeometry | None:
         "ring_material": _material(section, "ring_material"),
     }
     clearance = section.quantity("diametral_clearance", "m", -_WIDEST, _WIDEST, _MICROMETRE)
+    preload = section.quantity("preload", "N", 0.0, 1e9, Display("N"))
     section.close(others=_KEYS)
     known = {key: value for key, value in values.items() if value is not None}
     if len(section.problems) > before:
@@ -130,6 +131,10 @@ def read_balls(section: Table) -> BallGeometry | None:
             geometry = BallGeometry(text, **{"contact_angle": 0.0, "clearance": 0.0, **known})
         else:
             geometry = base.known(known, without_parts(base.estimated or "", known))
+        if preload is not None:
+            from ehdmaps.physics.point.row_catalogue import preloaded  # with what few bearings need
+
+            geometry = preloaded(geometry, preload)
         return geometry if clearance is None else geometry.with_clearance(clearance)
     except InputError as error:
         for problem in error.problems:

@@ -13,9 +13,8 @@ from ehdmaps.physics.point.ball_catalogue import (
     ball_boundary,
     ball_designations,
     ball_estimate,
-    ball_static_rating,
-    static_factor,
 )
+from ehdmaps.physics.point.ball_ratings import ball_static_rating, static_factor
 from tests.cases.witnesses import rows
 
 KNOWN = (

@@ -9,12 +9,20 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.balls import balls_of
 from ehdmaps.physics.designations.reader import table
-from ehdmaps.physics.point.ball_catalogue import ball_dynamic_rating, ball_estimate, ball_static_rating
+from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.point.ball_geometry import BallGeometry, BallRow
-from ehdmaps.physics.point.row_catalogue import row_designations
+from ehdmaps.physics.point.ball_ratings import ball_dynamic_rating, ball_static_rating
+from ehdmaps.physics.point.row_catalogue import PRELOADS, preload_of, row_designations
+from mbs import read_scene
 from mbs.bearings.balls.ball_bearing import BallForce
+from mbs.bearings.balls.ball_mounting import mounted
 from mbs.bearings.balls.laws import dry_law
+from mbs.bearings.thermal import STEEL_EXPANSION, Mounting, Seat
+from mbs.cli import main
+from tests.cases.witnesses import rows
+from tests.conformance.machines import Machine
 
 ANGULAR = ball_estimate("7208AC")
 PLACES = {"O": (-9e-3, 9e-3), "X": (9e-3, -9e-3)}
@@ -36,12 +44,12 @@ def carried(place: float) -> np.ndarray:
 def test_two_rows_are_two_bearings_at_their_places(arrangement, turned):
     """Force, K and C to round-off, tilted, turning, pressed and turned round."""
     shift, sign = 3e-6, -1.0 if turned else 1.0
-    rows = tuple(BallRow(way, place, shift) for way, place in zip((1.0, -1.0), PLACES[arrangement], strict=True))
-    both = dataclasses.replace(ANGULAR, contact_angle=sign * ANGULAR.contact_angle, rows=rows)
+    each = tuple(BallRow(way, place, shift) for way, place in zip((1.0, -1.0), PLACES[arrangement], strict=True))
+    both = dataclasses.replace(ANGULAR, contact_angle=sign * ANGULAR.contact_angle, rows=each)
     pose = np.array([2e-6, 5e-6, -7e-6, 0.0, 1e-4, -2e-4])
     at = {"inner_speed": 500.0, "cage_angle": 0.3}
     found, wanted = force_of(both)(pose, **at), [np.zeros(6), np.zeros((6, 6)), np.zeros((6, 6))]
-    for row in rows:
+    for row in each:
         way, place = sign * row.way, sign * row.place
         single = force_of(dataclasses.replace(ANGULAR, contact_angle=way * ANGULAR.contact_angle))
         moves = carried(place)
@@ -89,14 +97,14 @@ def test_axial_clearance_is_the_way_between_both_rows():
 
 def test_double_rows_of_the_catalogue_have_balls_as_they_are_made():
     """C and C0 agree on balls within 2 % of C; by chance a third of them would be within 1 % of 32nds of an inch."""
-    rows = {f"{series}{row[0]:g}": row for series, rows in table("balls")["double_row"].items() for row in rows}
+    entries = {f"{series}{row[0]:g}": row for series, rows in table("balls")["double_row"].items() for row in rows}
     near, ratios = [], []
     for name in row_designations():
         if name[0] == "Q":
             continue
         found = ball_estimate(name)
         bore = {"00": 10, "01": 12, "02": 15, "03": 17}.get(name[2:], 5 * int(name[2:]))
-        row = rows[f"{name[:2]}{bore}"]
+        row = entries[f"{name[:2]}{bore}"]
         ratios.append(ball_dynamic_rating(found) / row[3])
         assert ball_static_rating(found) == pytest.approx(row[4], rel=1e-9)
         assert 2.0 * found.rows[1].place > found.ball_diameter  # rows have room beside each other
@@ -125,3 +133,85 @@ def test_names_of_makers(typed, name, angle, least, largest):
 def test_others_are_refused(typed):
     with pytest.raises(InputError, match="designation: got"):
         ball_estimate(typed)
+
+
+@pytest.mark.parametrize("name", ["71914C", "71920AC", "7014C", "7210AC"])
+def test_pairs_by_class_have_the_preload_of_the_maker_and_its_rigidity(name):
+    """NSK's force exactly; its rigidity, which it computes by other balls and grooves, within 15 %."""
+    series, angle = ("719" if name[2] == "9" else name[:2]), name.lstrip("0123456789")
+    for place, level in enumerate(PRELOADS):
+        pair = ball_estimate(f"{name} DB{level}")
+        bore = 5 * int(name[len(series) : -len(angle)])
+        (force,) = (row[1 + place] for row in table("balls")["preload"][series][angle] if row[0] == bore)
+        assert preload_of(pair) == pytest.approx(force, rel=1e-9)
+        found = force_of(pair)(np.zeros(6))
+        assert found[0] == pytest.approx(np.zeros(6), abs=1e-7 * force)
+        if series == "719":  # whose rigidity is in the table
+            theirs = [row for row in rows("nsk_pair_rigidity") if row["designation"] == name]
+            assert 1e-6 * found[1][0, 0] == pytest.approx(
+                float(theirs[place]["pair_axial_rigidity_N_per_um"]), rel=0.15
+            )
+
+
+def test_each_side_of_a_set_has_the_force_and_shares_it():
+    quad = balls_of('{ name = "7014C QBC", preload = "500 N" }')
+    assert preload_of(quad) == pytest.approx(500.0, rel=1e-9)
+    three = balls_of('{ name = "7014C TBT", preload = "500 N" }')
+    assert three.rows[0].shift == three.rows[1].shift < three.rows[2].shift  # two share what one carries
+    assert force_of(three)(np.zeros(6))[0][0] == pytest.approx(0.0, abs=1e-6)
+    assert [row.place for row in quad.rows] == pytest.approx([-30e-3, -10e-3, 10e-3, 30e-3])
+    tandem = ball_estimate("7014C DT")
+    assert not tandem.axial_play and preload_of(tandem) == 0.0
+
+
+def test_mounting_tightens_a_pair_as_less_clearance_tightens_its_bearings():
+    """A fit, and a warm inner ring: radial as in cylindrical bearings, axial by the distance of the rows."""
+    pair = ball_estimate("7014C DBL")
+    fit = Mounting(Seat(8e-6, 70e-3, 0.0), None)
+    for mounting, inner, axial in ((fit, 293.15, 0.0), (Mounting(), 303.15, -10e-3 * STEEL_EXPANSION * 10.0)):
+        warm, change = mounted(pair, mounting, inner, 293.15)
+        taken = change.by_temperature + change.by_fits
+        assert taken < 0.0 and warm.tightening == pytest.approx(-taken)
+        single = force_of(dataclasses.replace(ball_estimate("7014C"), clearance=taken))
+        pressed = pair.rows[0].shift + axial
+        assert preload_of(warm) == pytest.approx(-single(np.array([pressed, 0, 0, 0, 0, 0.0]))[0][0], rel=1e-9)
+        assert preload_of(warm) > 1.1 * preload_of(pair)
+    fit = Mounting(Seat(8e-6, 40e-3, 0.0), None)
+    loose, change = mounted(ball_estimate("6208"), fit, 293.15, 293.15)
+    assert loose.clearance == pytest.approx(10e-6 + change.by_fits)
+
+
+@pytest.mark.parametrize(
+    ("typed", "said"),
+    [
+        (
+            "7014 CD/P4ADBA",
+            "allowed: a set without class of preload, with a force by keys, .*NSK's classes EL, L, M, H",
+        ),
+        ("7208B DBL", "allowed: a set without class of preload"),
+        ("7014C QBCL", "allowed: a set without class of preload"),
+    ],
+)
+def test_forces_that_are_not_known_are_asked_for(typed, said):
+    with pytest.raises(InputError, match=said):
+        ball_estimate(typed)
+
+
+@pytest.mark.parametrize("name", ["7014C", "7014C DT"])
+def test_one_way_alone_has_no_preload(name):
+    with pytest.raises(InputError, match=f"preload: got 100 N for {name}; allowed: zero or more, of rows that"):
+        balls_of(f'{{ name = "{name}", preload = "100 N" }}')
+
+
+def test_a_scene_mounts_its_pair(tmp_path, capsys):
+    text = Machine("pair", (("left", FITTED), ("right", 'bearing = "7014C DFM"'))).text()
+    scene = tmp_path / "machine.toml"
+    scene.write_text(text)
+    assert main(["statics", str(scene), "--law", "hertz"]) == 0
+    left = read_scene(scene).located[0].geometry
+    assert preload_of(left) > 2.0 * preload_of(ball_estimate("7014C DBL"))
+
+
+FITTED = """bearing = "7014C DBL"
+fit = { inner = { interference = "6 um", seat = "70 mm" } }
+thermal = { inner_ring = "45 degC", outer_ring = "40 degC" }"""

@@ -22,7 +22,8 @@ from ehdmaps.physics.designations.estimates import estimated_parts
 from ehdmaps.physics.designations.oil_class import _LIMITS, _QUADRATICS, CLASSES, viscosity_100, viscosity_index
 from ehdmaps.physics.designations.reader import read_designation
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
-from ehdmaps.physics.point.ball_catalogue import ball_estimate, ball_static_rating
+from ehdmaps.physics.point.ball_catalogue import ball_estimate
+from ehdmaps.physics.point.ball_ratings import ball_static_rating
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
 from ehdmaps.physics.solids import STEEL
 from mbs.cli import main as mbs_main
@@ -107,12 +108,14 @@ def test_each_part_of_a_designation_is_told(typed, name, told):
         ("32206 B", "B: steeper angle"),
         ("HCS7014-C-T-P4S", "HCS: smaller balls for high speed"),
         ("HCNU210", "rollers of silicon nitride: not yet"),
-        ("7208 B DB", "DB: set of bearings"),
+        ("6208 DB", "DB: set of bearings"),
         ("NJ2310 ECM/V", "V: full complement"),
     ],
 )
 def test_what_changes_forces_and_is_not_served_is_refused(typed, why):
-    read = {"7": ball_estimate, "H": designated, "N": designated, "3": tapered_estimate}[typed.removeprefix("HCS")[0]]
+    read = {"N": designated, "H": designated, "3": tapered_estimate}.get(typed.removeprefix("HCS")[0], ball_estimate)
+        typed.removeprefix("HCS")[0]
+    ]
     with pytest.raises(InputError, match=f"bearing designation: got '{typed}', {why}"):
         read(typed)
 

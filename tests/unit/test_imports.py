@@ -422,7 +422,7 @@ BUDGETS = (
     ("from mbs.bearings import bearing_force", 50, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps.law")),
     (BEARING, 116, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps.law", "ehdmaps.maps.emap")),
     (STATICS, 130, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs.job", "ehdmaps.maps.law", "ehdmaps.maps.emap")),
-    (FILMS_OF_TABLE, 100, (SOLVING[1], "numba", "matplotlib", "xarray", "pandas", "mbs")),
+    (FILMS_OF_TABLE, 101, (SOLVING[1], "numba", "matplotlib", "xarray", "pandas", "mbs")),
     ("from mbs.analyses import campbell, runup", 235, ("numba",)),
     (
         "import ehdmaps; ehdmaps.open_map(MAP).law('inner')",

@@ -12,7 +12,7 @@ from functools import cache
 from importlib import resources
 from typing import NamedTuple
 
-HYBRID, CLEARANCE, MOUNTING, REFUSED, UNKNOWN = "hybrid", "clearance", "mounting", "refused", "unknown"
+HYBRID, CLEARANCE, MOUNTING, REFUSED, UNKNOWN, SET = "hybrid", "clearance", "mounting", "refused", "unknown", "set"
 """Effects of a prefix or suffix beside having a meaning; empty where forces do not know it."""
 
 

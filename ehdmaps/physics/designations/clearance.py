@@ -270,7 +270,7 @@ def axial_range(found: Designation, bore: float) -> ClearanceRange | None:
     Parameters
     ----------
     found : Designation
-        The parts of its designation.
+        Parts of its designation.
     bore : float
         Bore [m].
 
@@ -303,7 +303,7 @@ def refuse_affixes(designation: str, found: Designation) -> None:
     designation : str
         Designation as it was typed.
     found : Designation
-        Its parts.
+        Parts of it.
 
     Raises
     ------

@@ -12,7 +12,7 @@ from functools import cache
 from importlib import resources
 from typing import Any, NamedTuple
 
-from ehdmaps.physics.designations.affixes import CLEARANCE, HYBRID, Affix, prefix, suffixes
+from ehdmaps.physics.designations.affixes import CLEARANCE, HYBRID, SET, Affix, prefix, suffixes
 
 CYLINDRICAL, NEEDLE, NEEDLE_CAGE, DEEP_GROOVE, ANGULAR, TAPERED, DOUBLE_ROW, FOUR_POINT = (
     "cylindrical roller bearing",
@@ -80,12 +80,17 @@ class Designation(NamedTuple):
     def name(self) -> str:
         """Designation without blanks and suffixes, such as "NU210" or "K40x48x20"; HC behind it for hybrid bearings."""
         name = re.sub("[X*]", "x", self._plain) if self.kind == NEEDLE_CAGE else self._plain
-        return name + HC if self.hybrid else name
+        return name + HC * self.hybrid + " " * bool(self.matched) + self.matched
 
     @property
     def text(self) -> str:
         """The same with its class of clearance, such as "NU210 C3"."""
         return f"{self.name} {self.clearance}".rstrip()
+
+    @property
+    def matched(self) -> str:
+        """Arrangement and class of preload of a set of bearings, such as "DBL"; empty for one bearing."""
+        return " ".join(one.text for one in self.affixes if one.effect == SET)
 
     @property
     def hybrid(self) -> bool:
@@ -96,6 +101,11 @@ class Designation(NamedTuple):
     def words(self) -> str:
         """Meaning of each part."""
         return "; ".join((f"{self._plain}: {self.kind}", *(one.words for one in self.affixes)))
+
+    @property
+    def single(self) -> str:
+        """Designation of one bearing of a set, without its class of clearance."""
+        return self._plain + HC * self.hybrid
 
     @property
     def _plain(self) -> str:

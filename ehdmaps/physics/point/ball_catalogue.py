@@ -32,6 +32,14 @@ from ehdmaps.physics.designations.clearance import delivered
 from ehdmaps.physics.designations.families import not_known
 from ehdmaps.physics.designations.reader import BALLS, HC, OF_ROWS, bore_code, plain_name, read_designation, table
 from ehdmaps.physics.point.ball_geometry import BallGeometry
+from ehdmaps.physics.point.ball_ratings import (
+    FACTORS,
+    INNER_CONFORMITY,
+    OUTER_CONFORMITY,
+    ball_diameter,
+    rating_of_ball,
+    static_factor,
+)
 from ehdmaps.physics.solids import SILICON_NITRIDE
 
 MOST_FILLED = 0.93
@@ -42,10 +50,6 @@ FILLING_ARC = math.radians(189.0)
 
 _FACTOR_ERROR, _ARC_ERROR = 0.1, math.radians(8.0)
 """By how much factor and arc tell the number of balls: a digit of the one, what bearings scatter of the other [rad]."""
-
-INNER_CONFORMITY, OUTER_CONFORMITY = 0.515, 0.52
-"""Groove radius over ball diameter. Their sum is that of NSK's table 15.4 (1.035 +- 0.002); its shares are assumed.
-ISO 281 takes at most 0.52 and 0.53, which others use."""
 
 ANGLES = {"C": 15.0, "AC": 25.0, "B": 40.0}
 """Contact angle by its suffix [deg]."""
@@ -69,12 +73,6 @@ THIN_ERRORS = (
 GROOVES, ANGULAR_GROOVES = (5, 22, 50), (5, 10, 15)
 """Change of K by an outer groove of 0.53 of the ball, of deep groove and of angular contact bearings [%]: radial; axial
 and against tilt; axial of rings that are held. K is smaller."""
-
-HYBRID_RATING = 0.7
-"""Static rating of a bearing with balls of silicon nitride over that with steel ones, as GMN's catalogue has it: equal
-pressure at the load of the rating takes (1/1.181)^2 = 0.717."""
-
-_FACTORS: list[float] = table("balls")["factors"]
 
 _MM = 1e-3
 
@@ -119,10 +117,10 @@ def ball_estimate(designation: str, basic_static_rating: float | None = None) ->
     (9, 11.91, 60.0)
     """
     parts = read_designation(designation)
-    if parts is not None and parts.kind in OF_ROWS:
-        from ehdmaps.physics.point.row_catalogue import row_estimate  # which stands on this
+    if parts is not None and (parts.kind in OF_ROWS or parts.matched):
+        from ehdmaps.physics.point.row_catalogue import row_estimate  # with what few bearings need
 
-        bearing = row_estimate(designation, parts)
+        bearing = row_estimate(designation, parts, ball_estimate, _width)
         material = SILICON_NITRIDE if parts.hybrid else None
         return dataclasses.replace(bearing, ball_material=material).typed(designation)
     series, code, suffix = _parts(designation)
@@ -173,7 +171,7 @@ def ball_estimate(designation: str, basic_static_rating: float | None = None) ->
         angle,
         0.0,
         estimated=basis + errors,
-        ball_material=SILICON_NITRIDE if name.endswith(HC) else None,
+        ball_material=SILICON_NITRIDE if HC in name else None,
     )
     return bearing.delivered(delivered(designation, entry.bore)).typed(designation)
 
@@ -194,6 +192,13 @@ def ball_boundary(designation: str) -> BallCatalogue | None:
     return _entry(*_parts(designation))
 
 
+def _width(designation: str) -> float:
+    """Width of a bearing of one row by its designation [m]."""
+    entry = ball_boundary(designation)
+    assert entry is not None  # there is an estimate of it
+    return entry.width
+
+
 def ball_designations() -> tuple[str, ...]:
     """Designations that `ball_estimate` knows."""
     deep = [f"{series}{bore_code(row[0])}" for series, rows in _DEEP.items() for row in rows]
@@ -205,60 +210,6 @@ def ball_designations() -> tuple[str, ...]:
     ]
     return (*deep, *angular)
 
-
-def static_factor(gamma: float) -> float:
-    """Factor f0 of ISO 76 for radial and angular contact ball bearings, by Dw cos(alpha)/d_m, 0 to 0.4.
-
-    Examples
-    --------
-    >>> static_factor(0.2)
-    14.0
-    """
-    place = 100.0 * min(max(gamma, 0.0), 0.4)
-    low = min(int(place), len(_FACTORS) - 2)
-    return _FACTORS[low] + (place - low) * (_FACTORS[low + 1] - _FACTORS[low])
-
-
-def ball_static_rating(geometry: BallGeometry) -> float:
-    """Static rating C0 of ISO 76 [N]; of balls of silicon nitride `HYBRID_RATING` of it."""
-    steel = geometry.balls * rating_of_ball(geometry.ball_diameter, geometry.pitch_diameter, geometry.contact_angle)
-    steel *= geometry.ball_rows
-    return HYBRID_RATING * steel if geometry.ball_material == SILICON_NITRIDE else steel
-
-
-def ball_dynamic_rating(geometry: BallGeometry, quality: float = 1.3) -> float:
-    """Dynamic rating C of ISO 281 by the inner geometry [N].
-
-    Parameters
-    ----------
-    geometry : BallGeometry
-        The bearing. Grooves that are tighter than those of the standard, 0.52 of the ball, add nothing.
-    quality : float
-        Factor b_m: 1.3 for deep groove and angular contact bearings.
-
-    Examples
-    --------
-    >>> round(1e-3 * ball_dynamic_rating(ball_estimate("6208")), 1)
-    28.9
-    """
-    angle, gamma = geometry.contact_angle, geometry.gamma
-    conformity = max(_GROOVE, geometry.inner_conformity), max(_GROOVE, geometry.outer_conformity)
-    across = [f / (2.0 * f - 1.0) for f in conformity]
-    both = 1.04 * ((1.0 - gamma) / (1.0 + gamma)) ** 1.72 * (across[0] / across[1]) ** 0.41
-    factor = 0.95 * 39.9 * (1.0 + both ** (10.0 / 3.0)) ** -0.3 * (2.0 * across[0]) ** 0.41
-    factor *= gamma**0.3 * (1.0 - gamma) ** 1.39 / (1.0 + gamma) ** (1.0 / 3.0)
-    diameter = geometry.ball_diameter / _MM
-    size = diameter**1.8 if diameter <= _LARGE else 3.647 * diameter**1.4
-    return float(
-        quality * geometry.ball_rows**0.7 * factor * math.cos(angle) ** 0.7 * geometry.balls ** (2.0 / 3.0) * size
-    )
-
-
-_GROOVE = 0.52
-"""Conformity of both grooves with which ISO 281 rates."""
-
-_LARGE = 25.4
-"""Diameter of a ball above which ratings grow less with it [mm]."""
 
 _DEEP: dict[str, list[list[float]]] = table("balls")["deep"]
 _ANGULAR: dict[str, dict[str, list[list[float]]]] = table("balls")["angular"]
@@ -296,30 +247,10 @@ def _entry(series: str, code: str, suffix: str) -> BallCatalogue | None:
     return BallCatalogue(*lengths, None if math.isnan(rating) else float(rating), factor)
 
 
-def rating_of_ball(diameter: float, pitch: float, angle: float) -> float:
-    """Static rating of a ball [N]."""
-    cosine = math.cos(angle)
-    return static_factor(diameter * cosine / pitch) * (diameter / _MM) ** 2 * cosine
-
-
-def ball_diameter(name: str, rating: float, pitch: float, angle: float, section: float) -> float:
-    """Diameter of the balls by the rating of one of them [m]."""
-    low, high = 0.2 * section, 0.95 * section
-    if not rating_of_ball(low, pitch, angle) < rating < rating_of_ball(high, pitch, angle):
-        raise InputError(
-            f"ball bearing estimate of {name}: no balls fit its static rating between {low / _MM:.3g} and "
-            f"{high / _MM:.3g} mm; allowed: C0, not C, in N"
-        )
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if rating_of_ball(middle, pitch, angle) < rating else (low, middle)
-    return 0.5 * (low + high)
-
-
 def _filled(name: str, rating: float, factor: float | None, pitch: float, section: float) -> tuple[int, float]:
     """Number and diameter of the balls of a deep groove bearing."""
     found: list[tuple[float, int, float]] = []
-    thin = factor is not None and factor > max(_FACTORS)
+    thin = factor is not None and factor > max(FACTORS)
     for balls in range(5, 40):
         if rating_of_ball(0.2 * section, pitch, 0.0) < rating / balls < rating_of_ball(0.95 * section, pitch, 0.0):
             # of thin sections catalogues have more than ISO 76, and ratings by it: Z Dw^2 is C0 over their own factor

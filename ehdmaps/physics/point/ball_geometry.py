@@ -44,7 +44,7 @@ class BallRow(NamedTuple):
     place : float
         Place along the axis [m].
     shift : float
-        By how much its inner groove stands beside where balls just touch [m]; > 0 presses them.
+        Way by which its inner groove stands beside where balls just touch [m]; > 0 presses them.
     """
 
     way: float = 1.0
@@ -88,7 +88,10 @@ class BallGeometry(Named):
     ball_material, ring_material : Material or None
         Materials of balls and of both rings; None: those that a question states, steel by default.
     rows : tuple of BallRow
-        Its rows, each of `balls` balls; those of double row bearings and of matched sets have places of their own.
+        Rows of `balls` balls each; those of double row bearings and of matched sets have places of their own.
+    tightening : float
+        Part of the radial distance of both raceways that fits and warmth take where the clearance is axial; of
+        diameters [m].
 
     Raises
     ------
@@ -119,6 +122,7 @@ class BallGeometry(Named):
     ball_material: Material | None = None
     ring_material: Material | None = None
     rows: tuple[BallRow, ...] = ONE_ROW
+    tightening: float = 0.0
 
     def __post_init__(self) -> None:
         problems = _problems(self)
@@ -146,6 +150,8 @@ class BallGeometry(Named):
         """See `Named.record`; materials in words."""
         found = super().record()
         del found["rows"]
+        if self.tightening == 0.0:
+            del found["tightening"]
         if len(self.rows) > 1:
             found["rows"] = self.row_words
         for part in ("ball", "ring"):
@@ -157,7 +163,7 @@ class BallGeometry(Named):
 
     @property
     def others(self) -> tuple[int, ...]:
-        """How many rows further the other contacts of the balls of each row are; 0 where balls have two contacts."""
+        """Rows from each row to that of the other contacts of its balls; 0 where balls have two contacts."""
         return (1, -1) if len(self.rows) == 2 and self.ball_rows == 1 else (0,) * len(self.rows)
 
     @property
@@ -197,16 +203,16 @@ class BallGeometry(Named):
     def radial_distance(self) -> float:
         """Radial distance of the groove centres of centred rings, A cos(alpha) - s/2 [m]."""
         play = 0.0 if self.axial_play else self.clearance
-        return self.groove_distance * math.cos(self.contact_angle) - 0.5 * play
+        return self.groove_distance * math.cos(self.contact_angle) - 0.5 * (play - self.tightening)
 
     @property
     def axial_play(self) -> bool:
-        """Whether its clearance is axial: rows that carry either way have one by where their grooves stand."""
+        """Tell whether its clearance is axial: rows that carry either way have one by where their grooves stand."""
         return self.contact_angle != 0.0 and len({row.way for row in self.rows}) > 1
 
     @property
     def shifted_rows(self) -> tuple[BallRow, ...]:
-        """Its rows with what an axial clearance loosens them."""
+        """Rows with what an axial clearance loosens them."""
         if not self.axial_play:
             return self.rows
         return tuple(row._replace(shift=row.shift - 0.5 * self.clearance) for row in self.rows)

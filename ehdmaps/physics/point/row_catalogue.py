@@ -21,24 +21,37 @@ ISO 76, ISO 281.
 
 from __future__ import annotations
 
+import dataclasses
 import math
+from collections.abc import Callable
 
-from ehdmaps.errors import InputError
+from scipy.optimize import brentq
+
+from ehdmaps.errors import InputError, short
 from ehdmaps.physics.designations.clearance import axial_range, refuse_affixes
 from ehdmaps.physics.designations.families import not_known
-from ehdmaps.physics.designations.reader import DOUBLE_ROW, FOUR_POINT, Designation, bore_code, table
-from ehdmaps.physics.point.ball_catalogue import (
+from ehdmaps.physics.designations.reader import DOUBLE_ROW, Designation, bore_code, table
+from ehdmaps.physics.point.ball_geometry import BallGeometry, BallRow
+from ehdmaps.physics.point.ball_ratings import (
     INNER_CONFORMITY,
     OUTER_CONFORMITY,
     ball_diameter,
     ball_dynamic_rating,
-    ball_estimate,
     rating_of_ball,
 )
-from ehdmaps.physics.point.ball_geometry import BallGeometry, BallRow
+from ehdmaps.physics.solids import STEEL, Material
 
 FOUR_POINT_ANGLE = 35.0
 """Contact angle of four-point contact bearings [deg]."""
+
+SETS = {
+    "DB": (1, -1), "DF": (-1, 1), "DT": (1, 1), "TBT": (1, 1, -1), "TFT": (-1, -1, 1), "TT": (1, 1, 1),
+    "QBC": (1, 1, -1, -1), "QFC": (-1, -1, 1, 1), "QBT": (1, 1, 1, -1), "QFT": (-1, -1, -1, 1), "QT": (1, 1, 1, 1),
+}  # fmt: skip
+"""Ways of the bearings of a set, from -x to +x."""
+
+PRELOADS = ("EL", "L", "M", "H")
+"""Classes of preload of NSK."""
 
 DOUBLE_ANGLES = {"": 25.0, "B": 25.0, "A": 30.0}
 """Contact angles of double row bearings by their suffix [deg]: NSK's 52, 53, and B of Schaeffler; A of SKF."""
@@ -50,15 +63,24 @@ _ERRORS = (
 _MM = 1e-3
 
 
-def row_estimate(designation: str, found: Designation) -> BallGeometry:
-    """Inner geometry of a double row angular contact or a four-point contact ball bearing.
+Estimate = Callable[[str], BallGeometry]
+
+
+def row_estimate(
+    designation: str, found: Designation, estimate: Estimate, width: Callable[[str], float]
+) -> BallGeometry:
+    """Inner geometry of a double row angular contact or a four-point contact ball bearing, or of a matched set.
 
     Parameters
     ----------
     designation : str
         Designation as it was typed: 32, 33 (or 52, 53) with bores of 10 to 85 mm; QJ2, QJ3 (30 to 200 mm), QJ10.
     found : Designation
-        Its parts.
+        Parts of it.
+    estimate : callable
+        Designation of a bearing of one row to its geometry.
+    width : callable
+        The same to its width [m].
 
     Raises
     ------
@@ -73,8 +95,9 @@ def row_estimate(designation: str, found: Designation) -> BallGeometry:
     (9, 11.95, '2 rows (+-) at -6.761 and 6')
     """
     refuse_affixes(designation, found)
-    make = {DOUBLE_ROW: _double_row, FOUR_POINT: _four_point}[found.kind]
-    bearing = make(found)
+    if found.matched:
+        return _matched_set(designation, found, estimate(found.single), width(found.single))
+    bearing = _double_row(found) if found.kind == DOUBLE_ROW else _four_point(found, estimate)
     if bearing is None:
         raise not_known(
             designation,
@@ -83,6 +106,112 @@ def row_estimate(designation: str, found: Designation) -> BallGeometry:
             "32, 33 with bores of 10 to 85 and 15 to 70 mm, QJ2, QJ3 with 30 to 200 mm, QJ10 with 80 to 200 mm",
         )
     return bearing
+
+
+def _matched_set(designation: str, found: Designation, one: BallGeometry, width: float) -> BallGeometry:
+    """Bearings that stand side by side, preloaded by their class."""
+    series, code, suffix = found.parts
+    sets = [name for name in SETS if found.matched.startswith(name)]
+    name = max(sets, key=len, default="")
+    preload, level = 0.0, found.matched.removeprefix(name)
+    if level:
+        rows = table("balls")["preload"].get(series, {}).get(suffix, [])
+        row = next((row for row in rows if bore_code(row[0]) == code), None)
+        if row is None or level not in PRELOADS or name[:1] != "D":
+            raise InputError(
+                f"bearing designation: got {short(designation)}; allowed: a set without class of preload, with a force "
+                f'by keys, {{ name = "{found.single} {name}", preload = "200 N" }}; NSK\'s classes '
+                f"{', '.join(PRELOADS)} are known for pairs of 719, 70, 72 C and AC, those of others are not"
+            )
+        preload = row[1 + PRELOADS.index(level)]
+    ways = SETS[name]
+    middle = 0.5 * (len(ways) - 1)
+    rows = tuple(BallRow(way, (place - middle) * width) for place, way in enumerate(ways))
+    return preloaded(dataclasses.replace(one, name=found.name, rows=rows, clearance=0.0, clearance_range=None), preload)
+
+
+def preloaded(geometry: BallGeometry, preload: float) -> BallGeometry:
+    """A bearing whose rows press each other with a force, at rest, dry, centred; each way shares it evenly.
+
+    Parameters
+    ----------
+    geometry : BallGeometry
+        Rows that carry either way; others have no preload of their own.
+    preload : float
+        Force of all rows of a way [N].
+
+    Raises
+    ------
+    InputError
+        For a preload that is none, or of rows that carry one way alone.
+    """
+    if not (math.isfinite(preload) and preload >= 0.0) or (preload and not geometry.axial_play):
+        raise InputError(
+            f"preload: got {preload:.6g} N for {geometry.name}; allowed: zero or more, of rows that carry either way"
+        )
+    count = {way: sum(row.way == way for row in geometry.rows) for way in (1.0, -1.0)}
+    shifts = {way: pressed_by(geometry, preload / rows) if rows else 0.0 for way, rows in count.items()}
+    return dataclasses.replace(geometry, rows=tuple(row._replace(shift=shifts[row.way]) for row in geometry.rows))
+
+
+def pressed_by(geometry: BallGeometry, force: float, material: Material = STEEL) -> float:
+    """Axial way by which a row of centred rings is pressed by an axial force [m], see `row_force`.
+
+    Parameters
+    ----------
+    geometry : BallGeometry
+        The bearing.
+    force : float
+        Force on one row [N].
+    material : Material
+        Material of balls and rings, where the geometry has none of its own.
+    """
+    if force == 0.0:
+        return 0.0
+    most = geometry.groove_distance
+    return float(brentq(lambda way: row_force(geometry, way, material) - force, 0.0, most, xtol=1e-15, rtol=1e-14))
+
+
+def row_force(geometry: BallGeometry, way: float, material: Material = STEEL) -> float:
+    """Axial force of a row of centred rings by the way that presses it, dry and at rest [N].
+
+    Both contacts are in series, and go with the power 2/3 of the load.
+
+    Parameters
+    ----------
+    geometry : BallGeometry
+        The bearing.
+    way : float
+        Axial way from where balls of the nominal geometry just touch [m].
+    material : Material
+        Material of balls and rings, where the geometry has none of its own.
+    """
+    inner, outer = geometry.contacts(material)
+    axial = geometry.groove_distance * math.sin(abs(geometry.contact_angle)) + way
+    length = math.hypot(axial, geometry.radial_distance)
+    pressed = max(length - geometry.groove_distance, 0.0)
+    load = (pressed / (float(inner.approach(1.0)) + float(outer.approach(1.0)))) ** 1.5
+    return float(geometry.balls * load * axial / length)
+
+
+def preload_of(geometry: BallGeometry) -> float:
+    """Force with which the rows of a bearing press each other: at rest, dry, centred, at the place without a load [N].
+
+    Parameters
+    ----------
+    geometry : BallGeometry
+        Rows that carry either way; of others it is zero.
+    """
+    if not geometry.axial_play:
+        return 0.0
+    rows = geometry.shifted_rows
+
+    def left(x: float) -> float:
+        return sum(row.way * row_force(geometry, row.shift + row.way * x) for row in rows)
+
+    most = 0.5 * geometry.groove_distance
+    x = float(brentq(left, -most, most, xtol=1e-15))
+    return math.fsum(row_force(geometry, row.shift + x) for row in rows if row.way > 0.0)
 
 
 def row_designations() -> tuple[str, ...]:
@@ -131,7 +260,7 @@ def _double_row(found: Designation) -> BallGeometry | None:
     )
 
 
-def _four_point(found: Designation) -> BallGeometry | None:
+def _four_point(found: Designation, estimate: Estimate) -> BallGeometry | None:
     """Two rows at one place."""
     _, series, code = found.parts
     row = _entry("four_point", series, code)
@@ -139,7 +268,7 @@ def _four_point(found: Designation) -> BallGeometry | None:
         return None
     bore, outside, _, static = row
     pitch, angle = 0.5 * (bore + outside) * _MM, math.radians(FOUR_POINT_ANGLE)
-    diameter = ball_estimate({"10": "60", "2": "62", "3": "63"}[series] + code).ball_diameter
+    diameter = estimate({"10": "60", "2": "62", "3": "63"}[series] + code).ball_diameter
     each = 5.0 * rating_of_ball(diameter, pitch, angle) * math.tan(angle)
     most = int(0.9 * math.pi * pitch / diameter)
     words = "inner geometry estimated from catalogue dimensions and NSK's static rating (ISO 76): "

@@ -95,7 +95,7 @@ class BallLoads(Loads):
 
     def life(self, geometry: BallGeometry, inner_turns: bool) -> ReferenceLife:
         """See `Loads.life`."""
-        from ehdmaps.physics.point.ball_catalogue import ball_dynamic_rating  # where lives are asked for
+        from ehdmaps.physics.point.ball_ratings import ball_dynamic_rating  # where lives are asked for
         from mbs.life import ball_reference_life
 
         return ball_reference_life(geometry, self.load, ball_dynamic_rating(geometry), inner_turns=inner_turns)
@@ -209,7 +209,7 @@ class BallForce(LocatingForce):
     @property
     def ratings(self) -> tuple[float, float]:
         """See `LocatingForce.ratings`."""
-        from ehdmaps.physics.point.ball_catalogue import ball_dynamic_rating, ball_static_rating
+        from ehdmaps.physics.point.ball_ratings import ball_dynamic_rating, ball_static_rating
 
         return ball_dynamic_rating(self.geometry), ball_static_rating(self.geometry)
 

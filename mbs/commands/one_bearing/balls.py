@@ -16,11 +16,13 @@ from ehdmaps.physics.solids import STEEL
 from ehdmaps.program import tell
 from ehdmaps.units import RPM, SPEED
 from mbs.bearings.balls.ball_bearing import BallForce
+from mbs.bearings.balls.ball_mounting import mounted
 from mbs.bearings.balls.ball_point import BallPoint, ball_dynamic_stiffness
 from mbs.bearings.balls.laws import BallLaw, dry_law
+from mbs.bearings.thermal import Mounting
 from mbs.commands.one_bearing.family import Asked, AtSpeed, Family, Request
 from mbs.commands.one_bearing.linear_files import Oscillating
-from mbs.commands.one_bearing.shared import assumed_clearance
+from mbs.commands.one_bearing.shared import assumed_clearance, read_rings
 from mbs.output.one_bearing.balls import BALLS
 from mbs.scene.map_set import TABLE_LAW
 from mbs.scene.specs import BallSpec
@@ -47,6 +49,9 @@ def _read(arguments: argparse.Namespace, chosen: Mapping[str, Any], problems: li
         option = "--clearance"
         if "clearance" in chosen:
             geometry = geometry.with_clearance(float(chosen["clearance"]))
+        option = "--ring-temperatures"
+        if arguments.ring_temperatures is not None:
+            geometry, _ = mounted(geometry, Mounting(), *read_rings(arguments, chosen, []))
     except InputError as error:
         problems += [f"{option}: {problem}" for problem in error.problems]
         return None
@@ -152,7 +157,7 @@ BALL_BEARINGS = Family(
     kind=BALLS,
     words="ball bearing",
     taken=("law", "physics", "supply", "clearance", "temperature", "roughness", "films"),
-    own=(),
+    own=("ring-temperatures",),
     film_laws=(FILMS, TABLE_LAW),
     beside_laws="; maps are of line contacts",
     memory=(".c", ".fmu", ".toml"),

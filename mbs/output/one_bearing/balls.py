@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from ehdmaps.physics.hertz import POINT_LIMIT
+from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.units import PRESSURE, RPM, SPEED, TEMPERATURE, Display
 from mbs.bearings.balls.ball_findings import ball_pressures
 from mbs.bearings.balls.ball_motion import ball_motion
@@ -85,6 +86,16 @@ def _angles(row: Row) -> str:
     return " ".join(f"{no_dust(DEGREE.value(angle)):6.1f}" for angle in row["contact_angle"])
 
 
+def preload_words(geometry: BallGeometry) -> str:
+    """Preload of rows that press each other, in words; empty for others."""
+    if not geometry.axial_play:
+        return ""
+    from ehdmaps.physics.point.row_catalogue import preload_of  # with what few bearings need
+
+    force = preload_of(geometry)
+    return f"; preload {FORCE.text(force)} at rest, centred" if force > 0.0 else "; no preload"
+
+
 def _about(description: Description, point: BallPoint) -> list[str]:
     """Lines on the geometry and the load."""
     geometry = point.force.geometry
@@ -96,7 +107,7 @@ def _about(description: Description, point: BallPoint) -> list[str]:
         f"grooves {geometry.inner_conformity:.4g} and {geometry.outer_conformity:.4g}, contact angle "
         f"{DEGREE.value(geometry.contact_angle):.4g} deg, {play} {MICROMETRE.text(geometry.clearance)}"
         f"{beside_class(geometry)}",
-        *([geometry.row_words] if geometry.row_words else []),
+        *([geometry.row_words + preload_words(geometry)] if geometry.row_words else []),
         *(["; ".join(materials)] if materials else []),
         f"{TEMPERATURE.text(description.temperature)}, {tilting(description, 'ball')}",
     ]

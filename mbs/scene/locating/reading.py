@@ -54,6 +54,7 @@ def _ball(section: Table, name: str) -> BallSpec | None:
         try:
             geometry = dataclasses.replace(geometry, contact_angle=way * geometry.contact_angle)
             geometry = geometry if clearance is None else geometry.with_clearance(clearance)
+            geometry = _mounted(section, geometry)
         except InputError as error:
             geometry = None
             for problem in error.problems:
@@ -61,6 +62,28 @@ def _ball(section: Table, name: str) -> BallSpec | None:
     if inner is None or outer is None or geometry is None:
         return None
     return BallSpec(name, inner, outer, geometry, angle, offset)
+
+
+def _mounted(section: Table, geometry: BallGeometry) -> BallGeometry:
+    """The bearing with its `fit`, and `thermal` of stated temperatures; without these at 20 degC."""
+    if "fit" not in section and "thermal" not in section:
+        return geometry
+    from mbs.bearings.balls.ball_mounting import mounted  # with what few scenes of balls state
+    from mbs.bearings.thermal import REFERENCE_TEMPERATURE, GivenTemperatures, Mounting
+    from mbs.scene.locating.mounting import read_mounting, read_thermal
+
+    mounting, thermal = read_mounting(section), read_thermal(section)
+    rings = REFERENCE_TEMPERATURE, REFERENCE_TEMPERATURE
+    if isinstance(thermal, GivenTemperatures):
+        rings = (thermal.inner or rings[0], thermal.outer or rings[1])
+    elif thermal is not None:
+        section.note("thermal", "got paths of heat; allowed for balls: inner_ring and outer_ring")
+    try:
+        return mounted(geometry, mounting or Mounting(), *rings)[0]
+    except InputError as error:
+        for problem in error.problems:
+            section.note("fit", problem.removeprefix("fit of the "))
+        return geometry
 
 
 def _known(geometry: BallGeometry | None) -> Callable[[str], BallGeometry]:
