@@ -114,8 +114,6 @@ def test_each_part_of_a_designation_is_told(typed, name, told):
 )
 def test_what_changes_forces_and_is_not_served_is_refused(typed, why):
     read = {"N": designated, "H": designated, "3": tapered_estimate}.get(typed.removeprefix("HCS")[0], ball_estimate)
-        typed.removeprefix("HCS")[0]
-    ]
     with pytest.raises(InputError, match=f"bearing designation: got '{typed}', {why}"):
         read(typed)
 

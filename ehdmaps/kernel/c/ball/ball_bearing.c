@@ -11,7 +11,7 @@
  *     axial   way (x + r (theta_y s - theta_z c)) + shift,        radial   y c + z s + p (theta_z c - theta_y s).
  *
  * The ball of a four-point contact bearing is one in each of two rows, the other one `other` places further. It has its
- * mass where its contacts are: the part of each row is that of how far its grooves overlap, half where none do.
+ * mass where its contacts are: half of it in each row where the grooves of both press it, all of it where those of one do.
  * ------------------------------------------------------------------------------------------------------------------ */
 
 EHD_SIZE_OF(ehd_ball_data)
@@ -69,9 +69,12 @@ static const double *ball_groove(const ehd_ball_data *of, int64_t j, const doubl
     return row;
 }
 
-/* By how much a ball between two grooves at d is pressed, if at all [m]. */
-static double ball_overlap(const ehd_ball_data *of, double dx, double dr) {
-    return most(sqrt(dx * dx + dr * dr) - of->shape.inner_arm - of->shape.outer_arm, 0.0);
+#define BALL_PRESSED 1e-6 /* overlap of grooves from which a ball is pressed by them [m] */
+
+/* Whether a ball between two grooves at d is pressed: 0 to 1. */
+static double ball_pressed(const ehd_ball_data *of, double dx, double dr) {
+    const double overlap = sqrt(dx * dx + dr * dr) - of->shape.inner_arm - of->shape.outer_arm;
+    return least(most(overlap / BALL_PRESSED, 0.0), 1.0);
 }
 
 /* What is wrong about a pose: 0, EHD_BALL_NOT_FINITE or EHD_BALL_TOO_FAR. */
@@ -109,8 +112,7 @@ int ehd_ball_force(const ehd_ball_data *of, const double *pose, ehd_ball_start *
         if (row[3] != 0.0) {
             double x, r;
             ball_groove(of, j + (int64_t)row[3], pose, c, s, &x, &r);
-            const double own = ball_overlap(of, on.dx, on.dr), both = own + ball_overlap(of, x, r);
-            const double part = both > 0.0 ? own / both : 0.5;
+            const double own = ball_pressed(of, on.dx, on.dr), part = own / most(own + ball_pressed(of, x, r), 1.0);
             on.drive.centrifugal = part * of->drive.centrifugal;
             on.drive.gyroscopic = part * of->drive.gyroscopic;
         }
