@@ -445,8 +445,57 @@ def split(text: str) -> tuple[str, str]:
     return value.strip(), tolerance.strip()
 
 
-OF_JOBS = ("temperature", "viscosity", "pressure_viscosity", "geometry")
-"""What a job has of these."""
+OF_JOBS = ("clearance", "temperature", "viscosity", "pressure_viscosity", "geometry")
+"""Keys of these that a job has."""
+
+OF_OILS = {
+    "viscosity": "viscosity",
+    "viscosity_40": "viscosity",
+    "viscosity_100": "viscosity",
+    "pressure_viscosity": "pressure_viscosity",
+    "pressure_viscosity_40": "pressure_viscosity",
+    "pressure_viscosity_100": "pressure_viscosity",
+}
+"""Keys of [lubricant] whose values may have a tolerance, and what it is of."""
+
+
+def without_tolerance(
+    table: object, keys: Mapping[str, str], where: str, problems: list[str]
+) -> tuple[Any, dict[str, Tolerance]]:
+    """A table with plain values in place of values with tolerances, and these: the larger one of a kind.
+
+    Parameters
+    ----------
+    table : object
+        The table as it was parsed; what is none is returned as it is.
+    keys : mapping of str to str
+        Keys that may have tolerances, and what each is of, one of `TOLERATED`.
+    where : str
+        Name of the table in messages.
+    problems : list of str
+        List that takes what is wrong.
+
+    Examples
+    --------
+    >>> without_tolerance({"viscosity": "80 mPa s +- 5 %"}, OF_OILS, "[lubricant]", [])[0]
+    {'viscosity': '80 mPa s'}
+    """
+    if not isinstance(table, dict):
+        return table, {}
+    plain, found = dict(table), dict[str, Tolerance]()
+    for key, name in keys.items():
+        text = table.get(key)
+        if not isinstance(text, str) or not all(parts := split(text)):
+            continue
+        plain[key] = parts[0]
+        try:
+            stated = read_tolerance(parts[1], name)
+        except InputError as error:
+            problems.append(f"{where} {key}: {error.problems[0]}")
+            continue
+        if name not in found or found[name].size < stated.size:
+            found[name] = stated
+    return plain, found
 
 
 def read_tolerances(section: Any, names: Sequence[str] = tuple(TOLERATED)) -> dict[str, Tolerance]:

@@ -101,9 +101,13 @@ def oil_bands(job: Job, point: OperatingPoint, solver: ContactSolver) -> Iterato
     if (one := stated.get("temperature")) is not None and not one.exact:
         yield f"temperature, {one.text}", both(one.size)
     if (one := stated.get("viscosity")) is not None and not one.exact:
+        made = [oil.thickened(1.0 + sign * one.size) for sign in (-1.0, 1.0)]
+        if all(made):
+            ends = [partial(answer, end) for end in made if end is not None]
+            yield f"viscosity, {one.text}", _largest(answer(oil), ends)
         # an equal viscosity by another temperature
         cold, hot = (oil.at(point.temperature + by).viscosity for by in (-1.0, 1.0))
-        if cold > hot:
+        if not all(made) and cold > hot:
             yield f"viscosity, {one.text}", both(one.size / (0.5 * math.log(cold / hot)))
     one = stated.get("pressure_viscosity")
     error = oil.coefficient_error(point.temperature) if one is None else one.size

@@ -26,7 +26,7 @@ from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.designations.families import words_for_lines
 from ehdmaps.physics.heat import ISOTHERMAL, heat_data
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.units import KELVIN, OF_JOBS, closest, read_tolerances
+from ehdmaps.units import KELVIN, OF_JOBS, OF_OILS, Tolerance, closest, read_tolerances, split, without_tolerance
 
 LONGEST_FILE = 1_000_000
 """Bytes of a job file; axes of a hundred thousand values still fit."""
@@ -128,12 +128,40 @@ def parse_job(
     problems: list[str] = []
     if not name.isprintable():
         problems.append(f"is called {name!r:.80}; allowed: printable characters, which its map can carry; rename it")
-    completed = defaults.complete(values)
+    plain, stated = taken_out(values, problems)
+    completed = defaults.complete(plain)
     top = Table(completed.values, "job file", problems)
-    job = _job(top, text, name, solver, to_run, finding_solids, completed)
+    job = _job(top, text, name, solver, to_run, finding_solids, completed, stated)
     if problems or job is None:
         raise InputError([f"{where}: {problem}" for problem in problems])
     return job
+
+
+def taken_out(values: dict[str, Any], problems: list[str]) -> tuple[dict[str, Any], dict[str, Tolerance]]:
+    """Tables of a job with plain values in place of values with tolerances, and these tolerances.
+
+    Parameters
+    ----------
+    values : dict
+        The tables as they were parsed.
+    problems : list of str
+        List that takes what is wrong.
+
+    Notes
+    -----
+    The clearance of [bearing], viscosities of [lubricant] and the only temperature of [grid] may have one.
+    """
+    changed, found = dict(values), dict[str, Tolerance]()
+    for name, keys in (("bearing", {"diametral_clearance": "clearance"}), ("lubricant", OF_OILS)):
+        if name in values:
+            changed[name], stated = without_tolerance(values[name], keys, f"[{name}]", problems)
+            found.update(stated)
+    grid = values.get("grid")
+    only = grid.get("temperature") if isinstance(grid, dict) else None
+    if isinstance(only, list) and len(only) == 1 and isinstance(only[0], str) and all(split(only[0])):
+        one, stated = without_tolerance({"temperature": only[0]}, {"temperature": "temperature"}, "[grid]", problems)
+        changed["grid"], found = {**grid, "temperature": [one["temperature"]]}, {**found, **stated}
+    return changed, found
 
 
 def _job(
@@ -144,6 +172,7 @@ def _job(
     to_run: bool,
     finding_solids: bool,
     completed: defaults.Completed,
+    stated: dict[str, Tolerance],
 ) -> Job | None:
     """Read all tables; None where a problem was noted."""
     schema = top.get("schema")
@@ -215,7 +244,7 @@ def _job(
         solver=solver,
         solver_options=options,
         assumed=completed.assumed,
-        tolerances=tolerances or {},
+        tolerances={**(tolerances or {}), **stated},
         **rest,
     )
 

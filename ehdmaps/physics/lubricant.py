@@ -458,6 +458,18 @@ class Lubricant:
         coefficients: dict[str, Any] = {"pressure_viscosity_40": alpha, "pressure_viscosity_100": alpha}
         return replace(self.pressure_viscosity, **coefficients)
 
+    def thickened(self, factor: float) -> Lubricant | None:
+        """The oil with its constant viscosity times a factor; None of one that changes with the temperature.
+
+        Parameters
+        ----------
+        factor : float
+            Factor of the viscosity, > 0.
+        """
+        law = self.viscosity
+        constant = isinstance(law, ConstantViscosity)
+        return replace(self, viscosity=ConstantViscosity(factor * law.viscosity)) if constant else None
+
     def with_alpha(self, factor: float, temperature: float) -> Lubricant | None:
         """The oil with its alpha times a factor; None where its law takes none.
 

@@ -168,7 +168,11 @@ def _viscosity(scene: Scene, oil: Lubricant) -> Iterator[Unknown]:
     except InputError:
         return
     kelvin = part / (0.5 * math.log(cold / hot)) if cold > hot else 0.0
-    looks, one = looks_of([_at(warmed, scene, by) for by in (kelvin, -kelvin)] if kelvin else [])
+    makers = [_at(warmed, scene, by) for by in (kelvin, -kelvin)] if kelvin else []
+    made = [oil.thickened(1.0 + sign * part) for sign in (-1.0, 1.0)]
+    if all(made):
+        makers = [_at(dataclasses.replace, scene, lubricant=end) for end in made]
+    looks, one = looks_of(makers)
     yield Unknown("viscosity", "viscosity", f"+-{100.0 * part:.3g} %", why, looks, one)
 
 
@@ -285,9 +289,9 @@ def _with_offset(scene: Scene, bearing: str, offset: float) -> Scene:
     return with_bearing(scene, bearing, lambda entry: dataclasses.replace(entry, axial_offset=offset))
 
 
-def _at(change: Callable[..., Scene], *values: object) -> Callable[[], Scene]:
+def _at(change: Callable[..., Scene], *values: object, **fields: object) -> Callable[[], Scene]:
     """Maker of a changed scene, called when it is asked for."""
-    return lambda: change(*values)
+    return lambda: change(*values, **fields)
 
 
 def elements_of(entry: BearingSpec | LocatingSpec) -> int:

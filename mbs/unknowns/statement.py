@@ -7,12 +7,22 @@ A scene keeps them in one mapping, `Scene.tolerances`: "clearance of drive" of o
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ehdmaps.errors import InputError, closest, short
-from ehdmaps.units import OF, TOLERATED, Tolerance, of_all, of_bearing, quantity, read_tolerance, split
+from ehdmaps.units import (
+    OF,
+    OF_OILS,
+    TOLERATED,
+    Tolerance,
+    of_all,
+    of_bearing,
+    quantity,
+    read_tolerance,
+    split,
+    without_tolerance,
+)
 
 if TYPE_CHECKING:
     from mbs.scene.scene import Scene
@@ -168,38 +178,31 @@ def taken_out(values: dict[str, Any], problems: list[str]) -> tuple[dict[str, An
 
     Notes
     -----
-    Temperature of [operation] and clearances of [[bearings]] may have tolerances. A profile that is stated is exact.
+    Temperature of [operation], viscosities of [lubricant] and clearances of [[bearings]] may have tolerances. A profile
+    that is stated is exact.
     """
     found: dict[str, Tolerance] = {}
-
-    def plain(table: object, key: str, group: str, name: str, where: str) -> object:
-        text = table.get(key) if isinstance(table, dict) else None
-        if not isinstance(table, dict) or not isinstance(text, str) or not all(parts := split(text)):
-            return table
-        try:
-            found[name] = read_tolerance(parts[1], group)
-        except InputError as error:
-            problems.append(f"{where} {key}: {error.problems[0]}")
-        return {**table, key: parts[0]}
-
     changed = dict(values)
-    if "operation" in values:
-        changed["operation"] = plain(values["operation"], "temperature", "temperature", "temperature", "[operation]")
+    for name, keys in (("operation", {"temperature": "temperature"}), ("lubricant", OF_OILS)):
+        if name in values:
+            changed[name], stated = without_tolerance(values[name], keys, f"[{name}]", problems)
+            found.update(stated)
     if isinstance(values.get("bearings"), list):
-        changed["bearings"] = [_plain_bearing(entry, found, plain) for entry in values["bearings"]]
+        changed["bearings"] = [_plain_bearing(entry, found, problems) for entry in values["bearings"]]
     return changed, found
 
 
-def _plain_bearing(entry: object, found: dict[str, Tolerance], plain: Callable[..., object]) -> object:
+def _plain_bearing(entry: object, found: dict[str, Tolerance], problems: list[str]) -> object:
     """A table [[bearings]] with plain values."""
     if not isinstance(entry, dict):
         return entry
     bearing, where = str(entry.get("name", "")), f"[[bearings]] {entry.get('name', '')!s:.60}"
     if "profile" in entry:
         found[of_bearing("profile", bearing)] = EXACT
-    name = of_bearing("clearance", bearing)
-    outer = plain(entry, "diametral_clearance", "clearance", name, where)
-    if isinstance(outer, dict) and "geometry" in outer:
-        outer = {**outer}
-        outer["geometry"] = plain(outer["geometry"], "diametral_clearance", "clearance", name, f"{where} geometry")
+    keys = {"diametral_clearance": "clearance"}
+    outer, stated = without_tolerance(entry, keys, where, problems)
+    if "geometry" in outer:
+        outer["geometry"], inner = without_tolerance(outer["geometry"], keys, f"{where} geometry", problems)
+        stated.update(inner)
+    found.update({of_bearing(name, bearing): one for name, one in stated.items()})
     return outer

@@ -271,6 +271,65 @@ def test_bands_follow_the_spread():
         parse_job(SMALL + '[tolerances]\npreload = "5 %"\n', "job", "")
 
 
+TYPED = """
+[bearing]
+name = "NU308"
+diametral_clearance = "25 um +- 5 um"
+[lubricant]
+viscosity_law = "roelands"
+viscosity = "84.5 mPa s +- 5 %"
+pressure_viscosity = "22.4 1/GPa +- 10 %"
+density = "880 kg/m^3"
+density_law = "dowson-higginson"
+[grid]
+load = ["10 N/mm", "20 N/mm", "40 N/mm", "80 N/mm"]
+entrainment_speed = ["1 m/s", "2 m/s", "3 m/s", "4 m/s"]
+temperature = ["40 degC +- 2 K"]
+[tolerances]
+viscosity = "50 %"
+[solver]
+name = "formula"
+structural_law = "iso16281"
+"""
+
+
+def test_values_of_a_job_with_their_tolerances(tmp_path, capsys):
+    """What stands behind a value is nearer than the table; the film is that of an oil so much thinner or thicker."""
+    job, point = parse_job(TYPED, "job", ""), OperatingPoint(2e4, 2.0, 313.15)
+    assert {name: one.text for name, one in job.tolerances.items()} == {
+        "clearance": "+-5 um",
+        "viscosity": "+-5 %",
+        "pressure_viscosity": "+-10 %",
+        "temperature": "+-2 K",
+    }
+    bands = dict(oil_bands(job, point, of_map(job)))
+    other = parse_job(TYPED.replace("84.5 mPa s +- 5 %", "80.275 mPa s"), "job", "")  # so much thinner
+    films = [
+        min(ehdmaps.solve(c, each.lubricant, point, solver="formula").central_film for c in each.contacts)
+        for each in (job, other)
+    ]
+    assert bands["viscosity, +-5 %"].film == pytest.approx(1.0 - films[1] / films[0], rel=1e-6)
+    assert bands["temperature, +-2 K"].film == 0.0  # of an oil that is the same at all temperatures
+    with pytest.raises(InputError) as caught:
+        parse_job(TYPED.replace("+- 5 %", "+- 5 um").replace("+- 2 K", "+- 90 K"), "job", "")
+    assert "[lubricant] viscosity: got '5 um'; allowed: " in str(caught.value)
+    assert "[grid] temperature: got '90 K'; allowed: " in str(caught.value)
+    path = tmp_path / "job.toml"
+    path.write_text(TYPED)
+    assert main(["generate", str(path), "-o", str(tmp_path / "map.nc")]) == 0
+    assert (
+        "not in the map: viscosity +-5 %, pressure-viscosity +-10 %, temperature +-2 K; its" in capsys.readouterr().out
+    )
+    ask = ["bearing", str(path), "--load", "5 kN", "--speed", "1500 rpm", "--bands", "all"]
+    assert mbs_main([*ask, "--know", "temperature = 40 degC +- 1 K"]) == 0
+    said = capsys.readouterr().out
+    assert "held open: clearance 25 um +-5 um (as stated)" in said
+    assert "temperature +-1 K (as stated), viscosity +-5 % (as stated), pressure-viscosity +-10 % (as stated)" in said
+    path.write_text(TYPED[: TYPED.index("[lubricant]")])  # the bearing alone
+    assert mbs_main([*ask, "--clearance", "20 um"]) == 0
+    assert "held open: clearance 20 um +-5 um (stated bare" in capsys.readouterr().out
+
+
 def run(command, words):
     """Run a command; its exit status says that it was done."""
     status = command(words.split("|"))

@@ -155,7 +155,20 @@ def _made(
         return "", INTERRUPTED
     without_solution = holes(generated.dataset) + unsolved(generated.dataset)
     missed = unmet(generated.dataset, generated.backbone is not None)
-    return "\n".join([summary(generated, output), *missed]), 1 if without_solution or missed else 0
+    text = "\n".join([summary(generated, output), *_not_in_it(job, output), *missed])
+    return text, 1 if without_solution or missed else 0
+
+
+def _not_in_it(job: Job, output: Path) -> list[str]:
+    """A line on what the job holds open; none where it states nothing."""
+    known = {name: one.text for name, one in job.tolerances.items() if name != "clearance"}  # in no film
+    if not known:
+        return []
+    told = ", ".join(f"{name.replace('_', '-')} {text}" for name, text in known.items())
+    return [
+        f"not in the map: {told}; its points are those of the numbers as stated, and `ehdmaps solve {output} ...` says "
+        "what these may change at a point"
+    ]
 
 
 def _with_fresh_films(job: Job) -> Job:

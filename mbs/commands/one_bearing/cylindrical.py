@@ -21,7 +21,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.rollers.needle_catalogue import needle_designations
 from ehdmaps.physics.solids import Material
 from ehdmaps.physics.surface import Surface
-from ehdmaps.units import closest, short
+from ehdmaps.units import OF_JOBS, closest, read_tolerances, short
 from mbs.analyses.bearing_point import bearing_point
 from mbs.bearings import laws
 from mbs.bearings.bearing import MOST_COUPLED, Bearing
@@ -156,7 +156,8 @@ def _from_file(source: str) -> Asked:
     job = read_job(source)
     if job.bearing is None:
         raise InputError(f"{source}: is the job of a bare [contact]; allowed: one with [bearing]")
-    return Asked(job.bearing, {}, (), job.contacts[0].material, job.lubricant, job.supply, job.surface)
+    material = job.contacts[0].material
+    return Asked(job.bearing, {}, (), material, job.lubricant, job.supply, job.surface, tolerances=job.tolerances)
 
 
 def _alone(source: str) -> Asked | None:
@@ -174,10 +175,12 @@ def _alone(source: str) -> Asked | None:
 def _of_tables(values: dict[str, Any], source: str) -> Asked:
     """The bearing of tables without [grid] and [solver]."""
     from ehdmaps.jobs.problem import read_contacts, read_lubricant
+    from ehdmaps.jobs.reader import taken_out
     from ehdmaps.jobs.supply import read_supply, read_surface
     from ehdmaps.jobs.table import Table
 
     problems: list[str] = []
+    values, typed = taken_out(values, problems)
     top = Table(values, "bearing file", problems)
     top.get("schema")
     geometry, contacts = read_contacts(top, "iso16281")
@@ -185,12 +188,13 @@ def _of_tables(values: dict[str, Any], source: str) -> Asked:
     oil = read_lubricant(section) if section else None
     supply = top.optional("supply", "[supply]", read_supply)
     surface = top.optional("surface", "[surface]", read_surface)
-    top.close(others=("schema", "bearing", "material", "lubricant", "supply", "surface"))
+    stated = top.optional("tolerances", "[tolerances]", lambda section: read_tolerances(section, OF_JOBS)) or {}
+    top.close(others=("schema", "bearing", "material", "lubricant", "supply", "surface", "tolerances"))
     if geometry is None and not problems:
         problems.append("bearing file: has [contact]; allowed: [bearing] with a name or dimensions")
     if problems or geometry is None:
         raise InputError([f"{source}: {problem}" for problem in problems])
-    return Asked(geometry, {}, (), contacts[0].material, oil, supply, surface)
+    return Asked(geometry, {}, (), contacts[0].material, oil, supply, surface, tolerances={**stated, **typed})
 
 
 def _refuse_axial(arguments: argparse.Namespace, problems: list[str]) -> None:

@@ -6,12 +6,14 @@ import argparse
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FilmConditions, OilSupply
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.surface import Surface
+from ehdmaps.units import Tolerance
 from mbs.bearings.thermal import BearingState
 from mbs.output.one_bearing.kind import Description, Kind, Points
 from mbs.scene.contact_laws import Damper
@@ -68,6 +70,8 @@ class Asked(NamedTuple):
         Map of its films.
     structure : str or None
         Structural law of the films of the table.
+    tolerances : mapping of str to Tolerance
+        How well its numbers are known, as its file says.
     """
 
     geometry: Any
@@ -80,6 +84,7 @@ class Asked(NamedTuple):
     state: BearingState | None = None
     emap: EHDMap | None = None
     structure: str | None = None
+    tolerances: Mapping[str, Tolerance] = MappingProxyType({})
 
 
 class AtSpeed(NamedTuple):

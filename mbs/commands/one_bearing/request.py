@@ -15,7 +15,7 @@ from ehdmaps.physics.heat import beyond_rule
 from ehdmaps.physics.lubricant import DEFAULT_OIL
 from ehdmaps.physics.oil_supply import FLOODED, FilmConditions
 from ehdmaps.physics.surface import SMOOTH
-from ehdmaps.units import TEMPERATURE
+from ehdmaps.units import TEMPERATURE, Tolerance
 from mbs.analyses.bearing_point import points_over, without_holes
 from mbs.bearings.laws import FORMULAS
 from mbs.commands.one_bearing.bands import NAME, point_bands, scene_of, turned
@@ -42,6 +42,7 @@ from mbs.scene.map_set import TABLE_LAW
 from mbs.scene.scene import Scene
 from mbs.unknowns.held_open import held_open, other_supplies
 from mbs.unknowns.looks import Band
+from mbs.unknowns.statement import Statement
 from mbs.unknowns.unknown import Unknown
 
 
@@ -128,7 +129,7 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
                 supply=supply,
                 oil=oil,
                 state=asked.state,
-                known=chosen.get("know", ()),
+                known=(*_of_file(asked.tolerances, chosen), *chosen.get("know", ())),
                 dielectric=dielectric,
                 more=() if dielectric is None else _electric(),
             ),
@@ -137,6 +138,13 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
     words, films = family.words_of(request)
     films += "" if oil.verified else " (unverified data of the oil)"
     return dataclasses.replace(request, description=dataclasses.replace(request.description, law=words, films=films))
+
+
+def _of_file(tolerances: Mapping[str, Tolerance], chosen: Mapping[str, Any]) -> Iterator[Statement]:
+    """Statements of a file, but for numbers that the command has anew."""
+    for group, tolerance in tolerances.items():
+        if group not in chosen:
+            yield Statement(group, "", None, tolerance, f"{group} = {tolerance.text}")
 
 
 def _electric() -> tuple[Number, ...]:
