@@ -160,7 +160,7 @@ def taken_out(values: dict[str, Any], problems: list[str]) -> tuple[dict[str, An
     only = grid.get("temperature") if isinstance(grid, dict) else None
     if isinstance(only, list) and len(only) == 1 and isinstance(only[0], str) and all(split(only[0])):
         one, stated = without_tolerance({"temperature": only[0]}, {"temperature": "temperature"}, "[grid]", problems)
-        changed["grid"], found = {**grid, "temperature": [one["temperature"]]}, {**found, **stated}
+        changed["grid"], found = {**values["grid"], "temperature": [one["temperature"]]}, {**found, **stated}
     return changed, found
 
 

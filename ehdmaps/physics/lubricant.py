@@ -467,8 +467,9 @@ class Lubricant:
             Factor of the viscosity, > 0.
         """
         law = self.viscosity
-        constant = isinstance(law, ConstantViscosity)
-        return replace(self, viscosity=ConstantViscosity(factor * law.viscosity)) if constant else None
+        if not isinstance(law, ConstantViscosity):
+            return None
+        return replace(self, viscosity=ConstantViscosity(factor * law.viscosity))
 
     def with_alpha(self, factor: float, temperature: float) -> Lubricant | None:
         """The oil with its alpha times a factor; None where its law takes none.

@@ -251,7 +251,7 @@ def test_places_and_laws_that_do_not_exist_are_said_together():
     ):
         assert words in text
     with pytest.raises(
-        InputError, match=r"--law: got 'constant:sfot' .*allowed here: hertz, formula, constant:soft, table, map"
+        InputError, match=r"--law: got 'constant:sfot' .*allowed here: hertz, formula, dietl, constant:soft, table, map"
     ):
         assemble(parse_scene(SCENE, "test", "test.toml"), "constant:sfot")
     for law, words in (
