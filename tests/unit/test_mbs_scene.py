@@ -263,7 +263,7 @@ def test_places_and_laws_that_do_not_exist_are_said_together():
         with pytest.raises(InputError, match=re.escape(words)):
             assemble(parse_scene(SCENE, "test", "test.toml"), law)
     felt = SCENE.replace("slices = 21", "slices = 21\ncentrifugal = true")
-    with pytest.raises(InputError, match="centrifugal = true in main; allowed: the laws map and formula"):
+    with pytest.raises(InputError, match="centrifugal = true in main; allowed: the laws map, formula and dietl"):
         assemble(parse_scene(felt, "test", "test.toml"), "hertz")
 
 
