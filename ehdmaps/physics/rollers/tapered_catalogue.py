@@ -77,8 +77,8 @@ def tapered_estimate(designation: str) -> TaperedGeometry:
     Parameters
     ----------
     designation : str
-        Series 302, 303, 313, 320, 322, 323 with bores of 15 to 80 mm, such as "32208"; blanks and suffixes of makers do
-        not matter.
+        Series 302, 303, 313, 320, 322, 323 with bores of 15 to 300 mm (313: 150), such as "32208"; blanks and suffixes
+        of makers do not matter.
 
     Raises
     ------
@@ -97,7 +97,7 @@ def tapered_estimate(designation: str) -> TaperedGeometry:
             designation,
             "tapered bearing",
             tapered_designations(),
-            "302, 303, 313, 320, 322, 323 with bores of 15 to 80 mm, as far as NSK makes them, such as '32208'",
+            "302, 303, 313, 320, 322, 323 with bores of 15 to 300 mm, as far as NSK makes them, such as '32208'",
         )
     delivered(designation, entry.bore)  # refuses a class of radial clearance
     angle = math.atan(entry.axial_factor / 1.5)
