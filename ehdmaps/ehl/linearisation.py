@@ -79,26 +79,6 @@ def stored_mass_rate(
 
 
 @njit
-def stored_mass_jacobian(
-    problem: LineProblem, x: FloatArray, step: FloatArray, kernel: FloatArray, unknowns: FloatArray
-) -> FloatArray:
-    """Derivative of `stored_mass`[0] by the unknowns, shape (n + 1, n + 2), on a grid that moves with the exit."""
-    n = x.size - 1
-    _, _, rho, rho_slope = oil(problem, node_pressure(unknowns))
-    gap = film(x, kernel, unknowns)
-    weight = rho * step
-    by_unknowns = np.empty((n + 1, n + 2))
-    for j in range(1, n):
-        column = -weight * kernel[:, j]
-        column[j] += step[j] * rho_slope[j] * gap[j]
-        put(accumulated(column), by_unknowns[:, j - 1])
-    by_unknowns[:, n - 1] = 0.0
-    put(accumulated(weight * (unknowns[n] + x)), by_unknowns[:, n])
-    put(accumulated(weight), by_unknowns[:, n + 1])
-    return by_unknowns
-
-
-@njit
 def accumulated(density: FloatArray) -> FloatArray:
     """Minus the integral over s from each face (and from the exit: 0) to the exit; fourth order inside.
 

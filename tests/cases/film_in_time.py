@@ -12,14 +12,14 @@ Loads and times are in the units of the starting point: p_H b and b/u.
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.compiled import njit
 from ehdmaps.ehl.dense import factorised, solved
-from ehdmaps.ehl.linearisation import stored_mass, stored_mass_jacobian
+from ehdmaps.ehl.linearisation import accumulated, stored_mass, stored_oil
 from ehdmaps.ehl.newton import LOG_VISCOSITY_STEP
 from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.reynolds import LineProblem, film, residual, steepest_viscosity_step
@@ -72,7 +72,6 @@ def follow(profile: Profile, loads: FloatArray, time_step: float, tolerance: flo
     return Motion(height, newton_steps)
 
 
-@njit(cache=False)  # the code that is kept belongs to the packages
 def _follow(
     problem: LineProblem,
     x: FloatArray,
@@ -99,8 +98,7 @@ def _follow(
         mass_before = (before * mass_old + long_before * mass_older) / time_step
         exit_before = (before * old[n] + long_before * older[n]) / time_step
         start = old.copy() if k == 0 else 2.0 * old - older
-        for i in range(n - 1):
-            start[i] = max(start[i], 0.0)
+        start[: n - 1] = np.maximum(start[: n - 1], 0.0)
         found, taken = _one_step(
             problem,
             x,
@@ -123,7 +121,26 @@ def _follow(
     return height, total
 
 
-@njit(cache=False)  # the code that is kept belongs to the packages
+@cache
+def _accumulation(size: int) -> FloatArray:
+    """The matrix of `accumulated`, which is linear."""
+    return np.column_stack([accumulated(one) for one in np.eye(size)])
+
+
+def stored_mass_jacobian(
+    problem: LineProblem, x: FloatArray, step: FloatArray, kernel: FloatArray, unknowns: FloatArray
+) -> FloatArray:
+    """Derivative of `stored_mass`[0] by the unknowns, shape (n + 1, n + 2), on a grid that moves with the exit."""
+    n = x.size - 1
+    stored = stored_oil(problem, x, step, kernel, unknowns)
+    by_pressure = np.diag(stored.by_pressure) - stored.by_film[:, None] * kernel
+    columns = np.zeros((n + 1, n + 2))
+    columns[:, : n - 1] = by_pressure[:, 1:n]
+    columns[:, n] = stored.by_film * (unknowns[n] + x)
+    columns[:, n + 1] = stored.by_film
+    return np.asarray(_accumulation(n + 1) @ columns)
+
+
 def _one_step(
     problem: LineProblem,
     x: FloatArray,
@@ -151,12 +168,10 @@ def _one_step(
         mass, carried = stored_mass(problem, x, step, kernel, unknowns)
         growth = rate * mass + mass_before - carried * (rate * unknowns[n] + exit_before)
         by_unknowns = rate * stored_mass_jacobian(problem, x, step, kernel, unknowns)
-        for f in range(n + 1):
-            by_unknowns[f, n] -= rate * carried[f]
-            side = -1.0 if f < n else 1.0
-            out[f] += side * growth[f]
-            for j in range(size):
-                matrix[f, j] += side * by_unknowns[f, j]
+        by_unknowns[:, n] -= rate * carried
+        side = np.append(-np.ones(n), 1.0)
+        out[: n + 1] += side * growth
+        matrix[: n + 1] += side[:, None] * by_unknowns
         move = solved(factorised(matrix), -out)
         peak = max(np.max(unknowns[: n - 1]), 1e-300)
         last = max(
