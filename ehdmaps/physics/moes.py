@@ -99,45 +99,6 @@ def film_from_moes(
     return as_given(film_number * scale, film_number)
 
 
-def load_and_speed(
-    load_number: float,
-    oil_number: float,
-    viscosity: float,
-    pressure_viscosity: float,
-    radius: float,
-    reduced_modulus: float,
-) -> tuple[float, float]:
-    """Load w [N/m] and entrainment speed u [m/s] at which a given oil and contact have the groups M and L.
-
-    The inverse of `moes_groups`.
-
-    Parameters
-    ----------
-    load_number : float
-        Moes' load number M.
-    oil_number : float
-        Moes' oil number L, > 0.
-    viscosity : float
-        eta0 [Pa s].
-    pressure_viscosity : float
-        alpha [1/Pa], > 0.
-    radius : float
-        R [m].
-    reduced_modulus : float
-        E' [Pa].
-
-    Examples
-    --------
-    >>> w, u = load_and_speed(20.0, 10.0, 0.0845, 2.24e-8, 5.5152e-3, 230.769e9)
-    >>> M, L = moes_groups(w, u, 0.0845, 2.24e-8, 5.5152e-3, 230.769e9)
-    >>> round(M, 9), round(L, 9)
-    (20.0, 10.0)
-    """
-    speed_number = (oil_number / (pressure_viscosity * reduced_modulus)) ** 4
-    load = load_number * reduced_modulus * radius * math.sqrt(speed_number)
-    return load, speed_number * reduced_modulus * radius / (2.0 * viscosity)
-
-
 def dowson_groups(
     load: Values,
     speed: float,

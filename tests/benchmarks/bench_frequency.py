@@ -29,10 +29,10 @@ from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.hertz import DRY_COMPLIANCE, half_width
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.moes import load_and_speed
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.spectrum import contact_spectrum
 from tests.cases.ehl import isoviscous_problem, roelands_problem
+from tests.cases.moes import load_and_speed
 from tests.verification.test_film_frequency import SOLIDS, TRANSIENT, oscillated
 
 CONTACT = BearingGeometry.named("NU308").contacts(STEEL, "iso16281")[0]

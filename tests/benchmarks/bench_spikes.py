@@ -33,8 +33,8 @@ from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import Structured, structured
 from ehdmaps.physics.hertz import half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.moes import load_and_speed
 from ehdmaps.physics.solids import STEEL
+from tests.cases.moes import load_and_speed
 
 CONTACT = BearingGeometry.named("NU308").contacts(STEEL, "iso16281")[0]
 OILS = (

@@ -20,8 +20,8 @@ from ehdmaps.openfoam.results import Results
 from ehdmaps.openfoam.solver import OpenFoamSolver
 from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.moes import load_and_speed
 from ehdmaps.physics.solids import STEEL
+from tests.cases.moes import load_and_speed
 
 CONTACT = LineContact("line", 10e-3, STEEL, "half_space", reference_depth=1e-3)
 TEMPERATURE = 313.15

@@ -2,7 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import pytest
+
+from tests.cases.coarse import coarse_tables
+
+
+@pytest.fixture(autouse=True, scope="package")
+def coarse() -> Iterator[None]:
+    """Claims on kinds hold with every table."""
+    with coarse_tables():
+        yield
 
 
 @pytest.fixture(autouse=True)

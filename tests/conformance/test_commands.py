@@ -42,7 +42,7 @@ DRY = dict.fromkeys(ALONE, "dry")
 # an error budget takes a law for each oil supply: needles, and rollers as bodies, have the page of cylindrical rollers
 PAGES = {
     "cylindrical": "films", "deep groove": "films", "angular contact": "dry", "tapered": "films", "ribbed NUP": "dry",
-    "ribbed NJ": "films", "table": "dry", "deep groove, cylindrical": "films",
+    "table": "dry",
 }  # fmt: skip
 
 COMMANDS = (

@@ -15,7 +15,14 @@ from mbs.scene.reader import parse_scene
 from tests.conformance.machines import KINDS, Machine
 
 LAYER, ROUGH = OilSupply(0.3e-6), Surface(0.8e-6)
-WITH_FILMS = [machine for machine in KINDS if machine.name in ("cylindrical", "deep groove", "tapered")]
+ALONE = {
+    "cylindrical": ("heat", "supply", "surface"),
+    "deep groove": ("heat", "supply", "surface"),
+    "tapered": ("heat",),
+}
+"""What each kind has alone: films of tapered rollers are those of lines, which cylindrical ones have."""
+
+WITH_FILMS = [machine for machine in KINDS if machine.name in ALONE]
 
 
 def made(machine: Machine, heat: bool = False, supply: OilSupply = FLOODED, surface: Surface = SMOOTH) -> Model:
@@ -38,8 +45,8 @@ def test_conditions_change_films_and_are_kept(machine):
     that is made again of its own scene has all of them, to round-off of the equilibrium."""
     plain = matrices(made(machine))
     each = {"heat": {"heat": True}, "supply": {"supply": LAYER}, "surface": {"surface": ROUGH}}
-    for name, given in each.items():
-        found = matrices(made(machine, **given))
+    for name in ALONE[machine.name]:
+        found = matrices(made(machine, **each[name]))
         for bearing in range(plain.shape[1]):
             change = np.abs(found - plain)[:, bearing].max(axis=(1, 2)) / np.abs(plain[:, bearing]).max(axis=(1, 2))
             assert change.max() > 1e-4, (name, bearing)

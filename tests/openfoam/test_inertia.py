@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from ehdmaps.physics.contact import OperatingPoint
-from ehdmaps.physics.moes import load_and_speed
 from tests.cases.inertia import RigidGap, inertia
+from tests.cases.moes import load_and_speed
 from tests.cases.openfoam_runs import ALPHA, CONTACT, ISOVISCOUS, ISOVISCOUS_L, TEMPERATURE, VISCOSITY
 from tests.cases.programs import needed
 

@@ -188,13 +188,13 @@ def test_an_installation_elsewhere_finds_what_builds_its_solver(installed, tmp_p
 @pytest.mark.slow
 def test_an_installation_elsewhere_has_its_jobs_scenes_exports_and_solids(installed, small_map, tmp_path):
     program, python = installed / "bin/ehdmaps", installed / "bin/python"
-    for code in (
+    codes = (
         "import ehdmaps.jobs.reader as r; assert len([r.read_job(name) for name in r.shipped_jobs()]) > 2",
         "import mbs.scene.reader as r; assert len([r.read_scene(name) for name in r.shipped_systems()]) > 2",
         "import ehdmaps.table.file as f; from ehdmaps import Lubricant; f.film_table(Lubricant.named('FVA3'))",
         "from ehdmaps.table.points.file import shipped_point_table; shipped_point_table()",
-    ):
-        done([python, "-c", code], tmp_path)
+    )
+    done([python, "-c", "\n".join(codes)], tmp_path)
     # in Python, as numba would compile all anew for the new place; with the finite elements of the housing
     in_python = {"NUMBA_DISABLE_JIT": "1"}
     done([installed / "bin/mbs", "statics", "gearbox", "--law", "hertz"], tmp_path, **in_python)

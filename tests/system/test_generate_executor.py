@@ -97,7 +97,7 @@ def test_ranks_of_mpi_make_the_same_map(job, tmp_path, capsys):
     assert main(["generate", str(job), "-o", str(tmp_path / "own.nc"), "--workers", "1"]) == 0
     command = [sys.executable, "-m", "mpi4py.futures", "-m", "ehdmaps", "generate", str(job)]
     command += ["-o", str(tmp_path / "theirs.nc"), "--executor", "mpi"]
-    done = subprocess.run([mpiexec, "-n", "3", *command], capture_output=True, text=True, timeout=240, check=False)
+    done = subprocess.run([mpiexec, "-n", "2", *command], capture_output=True, text=True, timeout=240, check=False)
     assert done.returncode == 0, done.stderr
     same(tmp_path / "own.nc", tmp_path / "theirs.nc")
 

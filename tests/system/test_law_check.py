@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -13,11 +14,19 @@ from ehdmaps.jobs.make.law_check import EDGE_SHARE
 from ehdmaps.jobs.make.spacing import RANDOM
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.maps.schema import BACKBONE
+from tests.cases.coarse import fine_tables
 
 pytestmark = pytest.mark.slow  # its map is checked against forty fresh solves
 
 OIL = (Path(__file__).parents[1] / "references" / "n1014_thin_oil.toml").read_text()
 TEXT = OIL.replace('"10 N/mm", "100 N/mm"', '"2 N/mm", "15 N/mm", "100 N/mm"') + 'law_check = 40\nfilms = "solved"\n'
+
+
+@pytest.fixture(scope="module", autouse=True)
+def fine() -> Iterator[None]:
+    """What is checked is how exact laws are."""
+    with fine_tables():
+        yield
 
 
 @pytest.fixture(scope="module")

@@ -63,8 +63,9 @@ def full():
 # --- streams
 
 
-@pytest.mark.parametrize("name", PROGRAMS)
-@pytest.mark.parametrize("option", ["--help", "--version"])
+@pytest.mark.parametrize(
+    ("name", "option"), [("ehdmaps", "--help"), ("mbs", "--version"), ("examples.housings", "--help")]
+)
 def test_help_that_finds_no_room_is_told(folder, name, option):
     with full() as stream:
         found = done(name, option, stdout=stream)
@@ -289,11 +290,10 @@ def test_too_few_addresses_are_told_within_seconds(folder):
     assert "limit of memory addresses: got 409.6 MB" in err and seconds < 30.0
 
 
-@pytest.mark.slow  # two processes that load all libraries
-@pytest.mark.parametrize("files", [6, 12])
-def test_too_few_files_are_told(folder, files):
+@pytest.mark.slow  # a process that loads all libraries
+def test_too_few_files_are_told(folder):
     """Which of both sentences it is hangs on what else is open then."""
-    status, err, _ = limited(folder, {"RLIMIT_NOFILE": files}, "generate", "job.toml", "--workers", "2")
+    status, err, _ = limited(folder, {"RLIMIT_NOFILE": 12}, "generate", "job.toml", "--workers", "2")
     assert status == 2
     last = err.splitlines()[-1]
     assert "the system has too little (Too many open files)" in last or "worker processes cannot be started" in last
@@ -318,11 +318,12 @@ def test_a_script_that_starts_itself_again_is_told_so(folder):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "command",
-    [["ehdmaps", "tradeoff", "nu308", "--points", "1000"], ["mbs", "campbell", "gearbox", "--law", "hertz"]],
-    ids=["ehdmaps", "mbs"],
+    ("command", "seed", "number", "status"),
+    [
+        pytest.param(["ehdmaps", "tradeoff", "nu308", "--points", "1000"], 1, signal.SIGINT, 130, id="ehdmaps"),
+        pytest.param(["mbs", "campbell", "gearbox", "--law", "hertz"], 2, signal.SIGTERM, 143, id="mbs"),
+    ],
 )
-@pytest.mark.parametrize(("seed", "number", "status"), [(1, signal.SIGINT, 130), (2, signal.SIGTERM, 143)])
 def test_ctrl_c_ends_a_program_in_peace(folder, command, seed, number, status):
     name, *arguments = command
     ready = (

@@ -31,7 +31,6 @@ from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.moes import load_and_speed
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.solution import Status
 from ehdmaps.table.coordinates import load_number_at, outside_family, valley_shift, zeta_of
@@ -41,6 +40,7 @@ from ehdmaps.table.films import TableFilms
 from ehdmaps.table.interpolation import Axes, place_of
 from ehdmaps.table.nodes import BEYOND_HEAVY, Nodes
 from tests.benchmarks.film_table import BESIDE, LOADS, SPEEDS, SQUALANE, SURE, TEMPERATURES, bearings, oils
+from tests.cases.moes import load_and_speed
 
 CERAMIC = Material(youngs_modulus=310e9, poisson_ratio=0.26)
 NUMBERS = tuple(field.name for field in FILMS)

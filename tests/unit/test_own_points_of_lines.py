@@ -90,12 +90,30 @@ def test_points_of_the_map_are_all_that_the_dear_solver_is_asked_for():
     assert sum(task.points for task in planned_tasks(JOB, Dear())) == JOB.points
 
 
-@pytest.mark.parametrize("more", ['backbone = "none"', pytest.param('physics = "thermal"', marks=pytest.mark.slow)])
-def test_without_lines_where_they_are_declined_or_films_know_heat(tmp_path, more):
-    job = parse_job(f"{TEXT}{more}\n".replace("points = 5", "points = 2"), "a", "a")
+def test_without_lines_where_they_are_declined(tmp_path):
+    job = parse_job(f'{TEXT}backbone = "none"\n'.replace("points = 5", "points = 2"), "a", "a")
     generated = generate(replace(job, temperatures=job.temperatures[:1]), tmp_path / "b.nc", 1, True, solver=Dear())
     assert generated.backbone is None
     assert set(SPACING_ERRORS) <= set(generated.dataset.variables)
+
+
+class AskedError(Exception):
+    """The tasks that a map begins with."""
+
+
+@pytest.mark.parametrize(("more", "lines"), [("", True), ('physics = "thermal"', False)])
+def test_films_that_know_heat_have_no_lines_between_the_points(tmp_path, monkeypatch, more, lines):
+    """They would take as long as the map."""
+
+    def ask(tasks, *_, **__):
+        raise AskedError(tasks)
+
+    monkeypatch.setattr("ehdmaps.jobs.make.generate.sweep", ask)
+    job = parse_job(f"{TEXT}{more}\n", "a", "a")
+    with pytest.raises(AskedError) as found:
+        generate(job, tmp_path / "b.nc", workers=1, solver=Dear())
+    (tasks,) = found.value.args
+    assert (max(len(task.loads) for task in tasks) > 2 * len(job.loads)) == lines
 
 
 def test_too_few_solutions_make_no_lines(tmp_path):

@@ -15,6 +15,7 @@ from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.films import dietl_damping
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solids import STEEL
+from tests.cases.moes import load_and_speed
 
 ROUND_OFF = 1e-12
 ALPHA, ETA, RADIUS, MODULUS = 2.2e-8, 0.08, 5.5e-3, 230.77e9
@@ -77,7 +78,7 @@ def test_moes_groups_by_hand():
 @given(load=st.floats(1.0, 1e6), speed=st.floats(1e-3, 50.0))
 def test_groups_and_back(load, speed):
     M, L = moes.moes_groups(load, speed, ETA, ALPHA, RADIUS, MODULUS)
-    back = moes.load_and_speed(M, L, ETA, ALPHA, RADIUS, MODULUS)
+    back = load_and_speed(M, L, ETA, ALPHA, RADIUS, MODULUS)
     assert back == pytest.approx((load, speed), rel=1e-11)  # fourth powers of round-off
 
 

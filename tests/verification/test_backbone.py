@@ -20,8 +20,9 @@ from ehdmaps.maps.backbone_plan import BackbonePlan, plan_backbone
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.moes import load_and_speed, moes_groups, valley_load_number
+from ehdmaps.physics.moes import moes_groups, valley_load_number
 from ehdmaps.physics.solids import STEEL
+from tests.cases.moes import load_and_speed
 
 OIL = Lubricant.named("FVA3")
 CONTACTS = BearingGeometry.named("NU308").contacts(STEEL, "iso16281")

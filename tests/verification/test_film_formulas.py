@@ -12,6 +12,7 @@ from scipy.optimize import brentq
 from ehdmaps.physics import films, hertz, moes
 from ehdmaps.physics.approach import half_space_compliance
 from ehdmaps.physics.lubricant import Lubricant
+from tests.cases.moes import load_and_speed
 
 REFERENCES = tomllib.loads((Path(__file__).parents[1] / "references" / "line_contact.toml").read_text(encoding="utf-8"))
 ALPHA, ETA, RADIUS, MODULUS = 1.7e-8, 0.04, 10e-3, 230.77e9
@@ -87,7 +88,7 @@ def test_half_space_law_has_the_dry_compliance_of_the_log_kernel():
 
 def dowson_film_number(formula, M, L):
     """Film number H of a formula in U, W, G."""
-    load, speed = moes.load_and_speed(M, L, ETA, ALPHA, RADIUS, MODULUS)
+    load, speed = load_and_speed(M, L, ETA, ALPHA, RADIUS, MODULUS)
     U, W, G = moes.dowson_groups(load, speed, ETA, ALPHA, RADIUS, MODULUS)
     return formula(U, W, G) / math.sqrt(2 * U)
 

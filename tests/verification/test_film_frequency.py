@@ -21,13 +21,14 @@ from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.hertz import DRY_COMPLIANCE, half_width
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.moes import load_and_speed, moes_groups
+from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import ContactSolverDefaults, contact_solution
 from ehdmaps.physics.spectrum import contact_spectrum
 from tests.cases.ehl import isoviscous_problem, roelands_problem, solved
 from tests.cases.film_in_time import follow
 from tests.cases.laws import CONTACTS, OIL
+from tests.cases.moes import load_and_speed
 
 SOLIDS = 1.75
 """Compliance of one contact of an NU308 between film and ring after ISO 16281, at 65 N/mm, in units of 4/E'."""
