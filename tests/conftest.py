@@ -159,3 +159,21 @@ def reynolds_map() -> str:
 def solved_map() -> str:
     """The same with all films solved, and with refinement lines."""
     return made_map("solved", f'{FINE}films = "solved"\n')
+
+
+@pytest.fixture(scope="module")
+def coarse_laws() -> Iterator[None]:
+    """Tables of laws are coarse: for tests of a module whose claims hold with every table."""
+    from tests.cases.coarse import coarse_tables
+
+    with coarse_tables():
+        yield
+
+
+@pytest.fixture
+def fine_laws() -> Iterator[None]:
+    """Tables of laws are as users have them, though those of the folder are coarse."""
+    from tests.cases.coarse import fine_tables
+
+    with fine_tables():
+        yield

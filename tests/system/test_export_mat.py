@@ -113,6 +113,7 @@ def _beside(found, law, approach, speed, temperature):
     return np.abs(found / wanted - 1.0)
 
 
+@pytest.mark.usefixtures("fine_laws")
 def test_octave_reads_the_law(path, tmp_path, capsys):
     """Between the nodes the law is met within what the file states, and outside the map there is no number.
 

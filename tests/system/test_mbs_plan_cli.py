@@ -14,6 +14,7 @@ from ehdmaps.physics.solution import FilmSolution, Status, contact_solution
 from mbs import cli
 
 
+@pytest.mark.usefixtures("fine_laws")
 @pytest.mark.slow
 def test_a_planned_map_serves_its_scene_and_is_as_good_as_it_should_be(tmp_path, monkeypatch, capsys):
     """At 40 degC the damping of the gearbox is negative in the valley, beside which a law must not ring."""

@@ -205,16 +205,14 @@ def test_below_whole_films_and_beyond_the_reach_all_of_the_film_counts_as_wrong(
 
 ROUGH = Surface(2e-7)
 LAWS = [
-    ("inner", "clamp", math.inf, SMOOTH),
     ("inner", "clamp", 2e-7, ROUGH),
-    ("inner", "clamp", 1e-4, SMOOTH),
     ("inner", "asymptote", math.inf, ROUGH),
     ("inner", "asymptote", 2e-7, SMOOTH),
     ("inner", "asymptote", 1e-4, ROUGH),
     ("inner", "error", 5e-6, ROUGH),
     ("series", "asymptote", 5e-6, SMOOTH),
 ]
-"""Each pair of a policy, a layer and a roughness, one of them in a series; the third policy where it may differ."""
+"""Each layer and each roughness with the policies, one of them in a series."""
 
 
 @pytest.mark.slow
@@ -297,7 +295,7 @@ def test_a_law_without_films_in_its_map_is_refused():
         ContactLaw("inner", (INNER,), OIL, ending, "asymptote", OF_TABLE, continued=None)
 
 
-OILS = [("NU207", "ISO VG 7"), ("NU207", "ISO VG 68"), ("NU1005", "FVA3"), ("N1014", "ISO VG 3200")]
+OILS = [("NU207", "ISO VG 7"), ("NU207", "ISO VG 68"), ("N1014", "ISO VG 3200")]
 """From the thinnest class that has an index to the thickest; NU207 with ISO VG 68 was refused."""
 
 
@@ -307,7 +305,7 @@ def test_every_kind_and_policy_of_shipped_classes_makes_a_law(bearing, oil):
     """With the ranges of who says nothing, far beyond which each is asked."""
     made = {
         (kind, outside): ehdmaps.law(bearing, oil, kind, outside=outside)
-        for kind, outside in (("series", "error"), ("series", "asymptote"), ("inner", "clamp"), ("outer", "asymptote"))
+        for kind, outside in (("series", "error"), ("series", "asymptote"), ("outer", "clamp"))
     }
     approach = np.linspace(-5e-6, 40e-6, 60)[:, None, None]
     u, T = np.geomspace(1e-3, 300.0, 9)[:, None], np.linspace(250.0, 450.0, 7)

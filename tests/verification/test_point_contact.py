@@ -360,8 +360,8 @@ def test_what_is_no_load_or_speed_is_refused(load, speed):
         solve(Ellipse(10e-3, 10e-3, STEEL), BALL_OIL, load, speed, WARM)
 
 
-@pytest.mark.parametrize("kappa", [0.3, 1.0, 3.0, 12.0, 30.0])
-@pytest.mark.parametrize("M", [0.5, 20.0, 3000.0, 20000.0])
+@pytest.mark.parametrize("kappa", [0.3, 3.0, 30.0])
+@pytest.mark.parametrize("M", [0.5, 20.0, 20000.0])
 def test_every_answer_has_its_error_or_its_reason(M, kappa):
     """From thick films to heavy circles: numbers in their physical order with errors, or none with a reason."""
     radius, modulus = 10e-3, STEEL
