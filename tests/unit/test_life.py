@@ -10,8 +10,9 @@ import pytest
 from scipy.optimize import brentq
 
 from ehdmaps.errors import InputError
+from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.point.ball_geometry import BallGeometry
-from ehdmaps.physics.point.ball_ratings import ball_dynamic_rating, ball_estimate
+from ehdmaps.physics.point.ball_ratings import ball_dynamic_rating
 from mbs.cli import main
 from mbs.life import (
     a_iso,
