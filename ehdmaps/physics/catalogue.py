@@ -9,9 +9,8 @@ exceptions. From them:
 - length L: what the static rating of ISO 76 takes, C0 = 44 (1 - D/d_m) Z L D [N, mm], where C0 is given; else a share
   of the width.
 
-Full complement bearings, NCF of series 30, have as many rollers as go in. E and both ratings are those of SKF's general
-catalogue, from memory: of the sizes here they agree on rollers of whole or half millimetres within 0.1 mm, which no
-others would. They carry as NJ do.
+Full complement bearings NCF have as many rollers as go in. E and both ratings are those of SKF's general catalogue
+(edition in Russian): together they tell rollers of whole or half millimetres within 3 %. They carry as NJ do.
 
 An older design, or one for high speeds, may differ by more than the errors that are stated.
 
@@ -31,7 +30,15 @@ from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.designations.clearance import ClearanceRange, class_range, delivered
 from ehdmaps.physics.designations.families import not_known, words_for_lines
-from ehdmaps.physics.designations.reader import CYLINDRICAL, NEEDLES, ROLLERS, plain_name, read_designation, table
+from ehdmaps.physics.designations.reader import (
+    CYLINDRICAL,
+    NEEDLES,
+    ROLLERS,
+    bore_code,
+    plain_name,
+    read_designation,
+    table,
+)
 from ehdmaps.physics.rollers.needle_catalogue import needle_boundary, needle_designations, needle_estimate
 from ehdmaps.physics.rollers.ratings import RATING
 
@@ -66,11 +73,15 @@ class Catalogue(NamedTuple):
 
 _TABLE = table("cylindrical")["bearings"]
 
+FULL = "NCF"
+"""Beginning of the series of full complement bearings."""
+
+_FULL_ROWS = {(series, bore_code(row[0])): row for series, rows in table("cylindrical")["full"].items() for row in rows}
 _FULL = {
-    ("30", f"{row[0] // 5:02d}"): Catalogue("30", *(x * _MM for x in (*row[:3], row[3] - 2 * row[4], row[3])))
-    for row in table("cylindrical")["full"]
+    key: Catalogue(FULL + key[0], *(x * _MM for x in (*row[:3], row[3] - 2 * row[4], row[3])))
+    for key, row in _FULL_ROWS.items()
 }
-_FULL_RATINGS = {key: float(row[5]) for key, row in zip(_FULL, table("cylindrical")["full"], strict=True)}
+_FULL_RATINGS = {key: float(row[5]) for key, row in _FULL_ROWS.items()}
 
 
 def estimate(designation: str, basic_static_rating: float | None = None) -> BearingGeometry:
@@ -80,7 +91,7 @@ def estimate(designation: str, basic_static_rating: float | None = None) -> Bear
     ----------
     designation : str
         N, NU, NJ or NUP of series 10, 2, 22, 3, 23 with bores of 20 to 100 mm, such as "NU206"; they differ in their
-        ribs alone. NCF of series 30 with 20 to 40 and 50 mm. Blanks and the suffixes of today's design do not matter:
+        ribs alone. NCF of series 18, 22, 29, 30 with 20 to 300 mm. Blanks and the suffixes of today's design do not matter:
         "NU 206 ECP". Or what `needle_estimate` takes.
     basic_static_rating : float, optional
         C0 [N] of the bearing's catalogue; without it that of the table here, and where it has none, the roller length
@@ -109,7 +120,7 @@ def estimate(designation: str, basic_static_rating: float | None = None) -> Bear
     clearance = delivered(designation, entry.bore)
     rating = tabulated_rating(designation) if basic_static_rating is None else basic_static_rating
     # makers' ratings of one bearing differ by up to a fifth, and so do their rollers
-    wide = 4 if entry.series == "30" else 12
+    wide = 4 if entry.series.startswith(FULL) else 12
     errors = ERRORS.format(wide, 20 if basic_static_rating is None else 6, 1)
     return _geometry(name, entry, rating, errors, clearance, "SKF's " if basic_static_rating is None else "")
 
@@ -268,9 +279,9 @@ def _looked_up(designation: str) -> Catalogue:
         raise not_known(
             designation,
             "bearing",
-            (*designations(), *(f"NCF30{code}" for _, code in _FULL), *needle_designations()),
+            (*designations(), *(f"{FULL}{series}{code}" for series, code in _FULL), *needle_designations()),
             f"{', '.join(BEARINGS)}, and N, NU, NJ or NUP of series 10, 2, 22, 3, 23 with bores of 20 mm (25 mm in "
-            "series 10) to 100 mm, such as 'NU206'; NCF of series 30; needles such as 'NA4908', 'K40x48x20'; give "
+            "series 10) to 100 mm, such as 'NU206'; NCF of series 18, 22, 29, 30; needles such as 'NA4908', 'K40x48x20'; give "
             "others by bore, outside_diameter, width and "
             "basic_static_rating",
             words_for_lines(designation),
@@ -289,7 +300,7 @@ def _geometry(
     """Rollers between two raceways."""
     diameter = 0.5 * (entry.outer_raceway - entry.inner_raceway)
     pitch = 0.5 * (entry.outer_raceway + entry.inner_raceway)
-    full = entry.series == "30"
+    full = entry.series.startswith(FULL)
     rollers = int(math.pi / math.asin(diameter / pitch)) if full else round(FILLED * math.pi * pitch / diameter)
     if rating is None:
         length = LENGTH_SHARE[entry.series] * entry.width

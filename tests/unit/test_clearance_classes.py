@@ -189,7 +189,7 @@ FAMILIES = {
     "thrust ball bearing": ("51108", "53208"),
     "four-point contact ball bearing": ("QJF208",),
     "double row cylindrical roller bearing": ("NN3010", "NNU4920"),
-    "full complement cylindrical roller bearing": ("NCF2208", "NJG2318", "SL045010"),
+    "full complement cylindrical roller bearing": ("NCF2808", "NJG2318", "SL045010"),
     "double row angular contact ball bearing of another series": ("3008", "3808"),
     "drawn cup needle roller bearing": ("HK2020", "BK1616"),
     "needle roller bearing of another type": ("NKI40/20", "NK40/20"),

@@ -37,7 +37,7 @@ class _Kind(NamedTuple):
 
 _KINDS = (
     _Kind(CYLINDRICAL, r"(NUP|NU|NJ|N)[ -]*(10|22|23|2|3)[ -]?(\d\d)"),
-    _Kind(CYLINDRICAL, r"(NCF)[ -]*(30)[ -]?(\d\d)(?:[ -]?C?V)?"),
+    _Kind(CYLINDRICAL, r"(NCF)[ -]*(18|22|29|30)[ -]?(\d\d)(?:[ -]?C?V)?"),
     _Kind(NEEDLE, r"(R?NAV?)[ -]?(49)[ -]?(\d\d)"),
     _Kind(NEEDLE_CAGE, r"(K) ?(\d+[X*]\d+[X*]\d+)"),
     _Kind(DEEP_GROOVE, r"(618|619|160|6[023489])[ -]?(\d\d)"),
