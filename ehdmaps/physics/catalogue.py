@@ -91,8 +91,8 @@ def estimate(designation: str, basic_static_rating: float | None = None) -> Bear
     ----------
     designation : str
         N, NU, NJ or NUP of series 10, 2, 22, 3, 23 with bores of 20 to 100 mm, such as "NU206"; they differ in their
-        ribs alone. NCF of series 18, 22, 29, 30 with 20 to 300 mm. Blanks and the suffixes of today's design do not matter:
-        "NU 206 ECP". Or what `needle_estimate` takes.
+        ribs alone. NCF of series 18, 22, 29, 30 with 20 to 260 mm. Blanks and the suffixes of today's design do not
+        matter: "NU 206 ECP". Or what `needle_estimate` takes.
     basic_static_rating : float, optional
         C0 [N] of the bearing's catalogue; without it that of the table here, and where it has none, the roller length
         is a share of the width.
@@ -281,8 +281,8 @@ def _looked_up(designation: str) -> Catalogue:
             "bearing",
             (*designations(), *(f"{FULL}{series}{code}" for series, code in _FULL), *needle_designations()),
             f"{', '.join(BEARINGS)}, and N, NU, NJ or NUP of series 10, 2, 22, 3, 23 with bores of 20 mm (25 mm in "
-            "series 10) to 100 mm, such as 'NU206'; NCF of series 18, 22, 29, 30; needles such as 'NA4908', 'K40x48x20'; give "
-            "others by bore, outside_diameter, width and "
+            "series 10) to 100 mm, such as 'NU206'; NCF of series 18, 22, 29, 30; needles as 'NA4908', 'K40x48x20'; "
+            "give others by bore, outside_diameter, width and "
             "basic_static_rating",
             words_for_lines(designation),
         )

@@ -10,8 +10,8 @@ from ehdmaps.physics.designations.reader import BALLS, ROLLERS, TAPERED, plain_n
 
 SERVED = (
     "deep groove balls 618, 619, 160, 60, 62, 63, 64; angular contact balls 718, 719, 70, 72, 73, two rows 32, 33, "
-    "four-point QJ; cylindrical rollers N, NU, NJ, NUP of 10, 2, 22, 3, 23, NCF of 18, 22, 29, 30; needles K, NA49; tapered "
-    "rollers 302, 303, 313, 320, 322, 323"
+    "four-point QJ; cylindrical rollers N, NU, NJ, NUP of 10, 2, 22, 3, 23, NCF of 18, 22, 29, 30; needles K, NA49; "
+    "tapered rollers 302, 303, 313, 320, 322, 323"
 )
 """Kinds and series that are served, in words."""
 

@@ -77,7 +77,7 @@ def tapered_estimate(designation: str) -> TaperedGeometry:
     Parameters
     ----------
     designation : str
-        Series 302, 303, 313, 320, 322, 323 with bores of 15 to 300 mm (313: 150), such as "32208"; blanks and suffixes
+        Series 302, 303, 313, 320, 322, 323 with bores of 15 to 300 mm (313: 95), such as "32208"; blanks and suffixes
         of makers do not matter.
 
     Raises
