@@ -20,7 +20,8 @@ speeds, energy       `roller_spin`,           `ball_speed`,             `tapered
                      `contact_energy`         `ball_motion`
 element              `bearing_element`,       as ribbed                 as balls                `locating_element`
                      `roller_element`
-films with memory    `memory_element`         as ribbed                 as balls                `film_memory`
+films with memory    `bearing_element`,       as ribbed                 as balls                `film_memory`
+                     `roller_element`
 small motions        `slices_in_balance`      `balls_in_balance`        `rollers_in_balance`
 laws over speed      `speed_tables`           as ribbed                 as balls                `film_tables`
 compiled runs        `cylinder`, `rings`,     `ball_block`              `tapered_block`         `locating_block`

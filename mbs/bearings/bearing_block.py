@@ -6,31 +6,27 @@ Massless rollers are answered all at once, rollers that are bodies contact by co
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from ctypes import addressof, c_int64, c_void_p
 from typing import Any, ClassVar
 
 import numpy as np
 
-from ehdmaps.arrays import BoolArray, FloatArray
+from ehdmaps.arrays import FloatArray
 from ehdmaps.kernel.library import checked, function
 from ehdmaps.kernel.record import Record, integers, numbers
 from mbs.bearings import cylinder as table
 from mbs.bearings.cylinder import CylinderLaw
 from mbs.bearings.rings import (
-    CourseRecord,
-    RingsRecord,
+    Rings,
     alike_contacts,
     alone,
-    course_record,
     feels,
     gather_rings,
     placed,
-    rings_record,
     strict,
 )
-from mbs.bearings.speed_tables import NODES, CourseOfFilms, SpeedTables, course_of
+from mbs.bearings.speed_tables import NODES, Course, CourseBlock, CourseOfFilms, SpeedTables, course_of
 from mbs.model.blocks import Kind, Member
 
 
@@ -115,7 +111,7 @@ class Bearings(Record):
 
     Attributes
     ----------
-    rings, course : RingsRecord, CourseRecord
+    rings, course : Rings, Course
         Constants of the bearings; places of the steps on the tables.
     laws : address
         Array of `CourseLaw`.
@@ -130,8 +126,8 @@ class Bearings(Record):
     """
 
     _fields_: ClassVar = [
-        ("rings", RingsRecord),
-        ("course", CourseRecord),
+        ("rings", Rings),
+        ("course", Course),
         ("laws", c_void_p),
         ("profiles", numbers),
         ("strict", integers),
@@ -142,7 +138,7 @@ class Bearings(Record):
     ]
 
 
-class BearingBlock:
+class BearingBlock(CourseBlock):
     """The bearings of a run; contacts with the same law at the same conditions share their tables.
 
     Parameters
@@ -153,16 +149,17 @@ class BearingBlock:
 
     def __init__(self, members: Sequence[Member]) -> None:
         films_of, alike = alike_contacts(members)
-        self._films = Films([SpeedTables(one.bearing, one.law, one.temperature, one.rates) for one in alike])
-        self._laws = (CourseLaw * len(alike))(*self._films.laws)
+        films = Films([SpeedTables(one.bearing, one.law, one.temperature, one.rates) for one in alike])
+        super().__init__(films.course, films.in_use)
+        self._kept = films, (CourseLaw * len(alike))(*films.laws)
         rings = gather_rings(members, films_of)
-        room, slices = 4 * rings.most_slices, rings.positions.shape[1]
+        room, slices = 4 * rings.most, rings.most_slices
         # a roller that is a body has half of the profile in each of its contacts
-        profiles = rings.profiles if films_of.shape[1] == 1 else 0.5 * rings.profiles
-        self._data = checked(Bearings, "ehd_cylinder_block")(
-            rings=rings_record(rings),
-            course=course_record(course_of(0, len(alike))),
-            laws=addressof(self._laws),
+        profiles = rings.given("profiles") * (1.0 if rings.sides == 1 else 0.5)
+        self.data = checked(Bearings, "ehd_cylinder_block")(
+            rings=rings,
+            course=course_of(0, len(alike)),
+            laws=addressof(self._kept[1]),
             profiles=profiles,
             strict=strict(members).astype(np.int64),
             states=np.zeros((*films_of.shape, room)),
@@ -170,23 +167,6 @@ class BearingBlock:
             place=np.zeros(slices + 1),
             row=np.zeros(slices + 1, dtype=np.int64),
         )
-
-    def begin(self, speeds: FloatArray) -> None:
-        """Find the places of the speeds [rad/s] on the tables."""
-        self._films.course.begin(speeds)
-
-    def prepare(self, first: int, last: int) -> tuple[Bearings, BoolArray]:
-        """Make the tables of the next steps, as many as are held at once.
-
-        Parameters
-        ----------
-        first, last : int
-            Steps of those that `begin` was told.
-        """
-        course, sound = self._films.course.prepare(first, last)
-        self._films.in_use[:, 1] = math.nan  # slots have other tables now
-        self._data.put(course=course_record(course))
-        return self._data, sound
 
 
 def _takes(element: Any) -> bool:

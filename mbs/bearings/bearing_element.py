@@ -1,7 +1,7 @@
 """A bearing in a system: the bearing force between two places, at the speed and cage angle that the system has.
 
 Its rollers are massless, with one law of both contacts in series (`BearingElement`), or bodies between two contacts
-(`mbs.bearings.roller_element`). Films follow at once, or need time (`mbs.bearings.memory_element`).
+(`mbs.bearings.roller_element`). Films follow at once, or need time (`films`).
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, Self
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.physics.hertz import LINE_LIMIT, max_pressure
 from ehdmaps.physics.solids import STEEL
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_force import NO_COUPLED_MEMORY, BearingForce
+from mbs.bearings.bearing_force import AT_REST, NO_COUPLED_MEMORY, BearingForce
 from mbs.bearings.contact_energy import brought_by_speed, cage_moment, energy_at_rest
 from mbs.bearings.cylinder import Arrays
 from mbs.bearings.films import DryContacts, FilmSource
@@ -31,6 +31,7 @@ from mbs.model.findings import Gauge
 from mbs.model.relaxation import Films, Relaxation
 
 if TYPE_CHECKING:
+    from ehdmaps.maps.kernels.memory import FilmMemory, FilmState
     from ehdmaps.maps.law import ContactLaw
     from ehdmaps.physics.lubricant import Lubricant
     from mbs.bearings.contact_report import BearingContacts, RollingLoss
@@ -50,6 +51,27 @@ HARMONICS = 3
 """Multiples of the order of passing rollers that are worth following."""
 
 
+NO_FILMS = "got 'memory' with a law without films; allowed: laws map and formula"
+
+
+class FilmStates(NamedTuple):
+    """States of a bearing's films after a step.
+
+    Attributes
+    ----------
+    films : tuple of FilmState
+        Films of all slices of all rollers, shape (Z, n), for each side of the contacts.
+    time : float
+        End of the step [s].
+    before : tuple of FilmState or None
+        Films at its beginning; None where that is not known.
+    """
+
+    films: tuple[FilmState, ...]
+    time: float
+    before: tuple[FilmState, ...] | None = None
+
+
 class RingElement(OnRings):
     """Element that is listed as a roller bearing: its first six displacements are those of an inner ring.
 
@@ -58,7 +80,9 @@ class RingElement(OnRings):
     Attributes
     ----------
     films : {"slow", "memory"}
-        Whether small oscillations see the films of slow motion at any frequency, or films that relax.
+        Whether small oscillations see the films of slow motion at any frequency, or films that relax. Those that do
+        have a state for each slice of each side of a contact in runs, by `ehdmaps.maps.kernels.memory_table`; at rest
+        they are the same.
     """
 
     memory_words: ClassVar[str] = "one relaxation time of a slice leaves"
@@ -79,6 +103,73 @@ class RingElement(OnRings):
         """The same where all of them have films; else none."""
         laws = tuple(flat.law for flat in self.flat_laws if not isinstance(flat.law, DryLaw))
         return laws if len(laws) == len(self.flat_laws) else ()
+
+    def advance(
+        self, states: FilmStates | None, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> tuple[Forces, FilmStates | None]:
+        """See `Element.advance`: a step of films with memory as `ContactLaw.advance` for all slices, by no rates."""
+        if not self.relaxes:
+            return super().advance(states, displacement, velocity, operation)
+        before = None if states is None else states.films
+        dt = 0.0 if states is None else operation.time - states.time
+        forces, films = self.advance_films(before, displacement, dt, operation)
+        return forces, FilmStates(films, operation.time, before)
+
+    def powers(
+        self,
+        states: FilmStates | None,
+        force: FloatArray,
+        displacement: FloatArray,
+        velocity: FloatArray,
+        operation: Operation,
+    ) -> Powers | None:
+        """See `Element.powers`: what contacts or films with memory take up, and what cage and rollers bring in."""
+        if not self.flat_laws:
+            return None
+        if states is None:
+            at_rest = self.evaluate(displacement, np.zeros_like(velocity), operation).force
+            brought = self.brought_in(at_rest, displacement, velocity, operation)
+            return Powers(-float((force - at_rest) @ velocity), brought)
+        memories, length = self.in_time(operation)
+        spent = 0.0
+        if states.before is not None:
+            sides = zip(memories, states.before, states.films, strict=True)
+            spent = sum(float(np.sum(memory.spent(before, films))) for memory, before, films in sides)
+        return Powers(0.0, self.brought_in(force, displacement, velocity, operation), spent * length)
+
+    def stored(self, states: FilmStates | None, displacement: FloatArray, operation: Operation) -> float | None:
+        """See `Element.stored`: energy of its contacts at rest, or of the solids and of films that follow."""
+        if states is None:
+            return self.stored_at_rest(displacement, operation)
+        memories, length = self.in_time(operation)
+        sides = zip(memories, states.films, strict=True)
+        return sum(float(np.sum(memory.stored(films))) for memory, films in sides) * length
+
+    def stored_at_rest(self, displacement: FloatArray, operation: Operation) -> float | None:
+        """Energy of its contacts at rest [J], the integral of loads over approaches; None if it does not say."""
+        return None
+
+    def in_time(self, operation: Operation) -> tuple[tuple[FilmMemory, ...], float]:
+        """Laws with memory of each side of the contacts at the speed, and the length of a slice [m]."""
+        raise NotImplementedError
+
+    def advance_films(
+        self, before: tuple[FilmState, ...] | None, displacement: FloatArray, dt: float, operation: Operation
+    ) -> tuple[Forces, tuple[FilmState, ...]]:
+        """Forces and films after a step.
+
+        Parameters
+        ----------
+        before : tuple of FilmState or None
+            Films at its beginning; None for films in equilibrium at its end, which have not moved yet.
+        displacement : array, shape (m,)
+            Displacements of the ports at its end.
+        dt : float
+            Length of the step [s]; of no effect without `before`.
+        operation : Operation
+            Speed, angle and time at its end.
+        """
+        raise NotImplementedError
 
     def brought_in(
         self, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
@@ -202,10 +293,14 @@ class BearingElement(RingElement):
     source: FilmSource | None = None
 
     def __post_init__(self) -> None:
-        if self.films == "memory" and self.centrifugal:
-            raise InputError(f"bearing {self.name!r}, films: {NO_CENTRIFUGAL}")
-        if self.films == "memory" and self.bearing.coupled:
-            raise InputError(f"bearing {self.name!r}, films: {NO_COUPLED_MEMORY}")
+        wrong = (
+            (NO_CENTRIFUGAL, self.centrifugal),
+            (NO_COUPLED_MEMORY, self.bearing.coupled),
+            (NO_FILMS, not self.film_laws),
+        )
+        for words, found in wrong:
+            if self.relaxes and found:
+                raise InputError(f"bearing {self.name!r}, films: {words}")
 
     @property
     def ports(self) -> tuple[Port, ...]:
@@ -362,12 +457,23 @@ class BearingElement(RingElement):
         conditions, load = self.conditions(operation), self.centrifugal_load(operation)
         return self.force.evaluate(displacement, velocity, **conditions, centrifugal_load=load)
 
-    def powers(
-        self, states: Any, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
-    ) -> Powers:
-        """Power that its contacts dissipate, and power that the turning of the cage brings in, see `Element.powers`."""
-        at_rest = self.evaluate(displacement, np.zeros(6), operation).force
-        return Powers(-float((force - at_rest) @ velocity), self.brought_in(at_rest, displacement, velocity, operation))
+    def in_time(self, operation: Operation) -> tuple[tuple[FilmMemory, ...], float]:
+        """See `RingElement.in_time`."""
+        conditions = self.entrainment_speed(operation), self.temperature, self.centrifugal_load(operation)
+        return (self.force.in_time(*conditions).law.memory,), self.bearing.slice_length
+
+    def advance_films(
+        self, before: tuple[FilmState, ...] | None, displacement: FloatArray, dt: float, operation: Operation
+    ) -> tuple[Forces, tuple[FilmState, ...]]:
+        """Forces and films after a step, see `RingElement.advance_films`."""
+        forces, films = self.force.advance(
+            None if before is None else before[0],
+            displacement,
+            AT_REST if before is None else dt,
+            **self.conditions(operation),
+            centrifugal_load=self.centrifugal_load(operation),
+        )
+        return forces, (dataclasses.replace(films, step=0.0) if before is None else films,)
 
     def brought_in(
         self, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
@@ -375,8 +481,8 @@ class BearingElement(RingElement):
         """Power of the turning cage, see `RingElement.brought_in`."""
         return cage_moment(force, displacement, 1) * self.rates[0] * operation.speed
 
-    def stored(self, states: Any, displacement: FloatArray, operation: Operation) -> float:
-        """Energy of its contacts at rest [J]: the integral of their loads over the approach; see `Element.stored`."""
+    def stored_at_rest(self, displacement: FloatArray, operation: Operation) -> float:
+        """See `RingElement.stored_at_rest`."""
         conditions = self.entrainment_speed(operation), self.temperature, self.centrifugal_load(operation)
         rollers = self.loads(displacement, operation)
         energy = energy_at_rest(self.force.law, conditions, self.bearing, rollers.approach)

@@ -104,6 +104,9 @@ class ForceInTime:
         return approaches
 
 
+AT_REST = 1e6
+"""A step so long that films are in equilibrium at its end [s]."""
+
 NO_COUPLED_MEMORY = "got coupled slices with films that have a memory; allowed: slow films, or slices on their own"
 
 

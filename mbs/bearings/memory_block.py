@@ -27,23 +27,19 @@ from ehdmaps.kernel.record import Record, integers, numbers
 from ehdmaps.maps.kernels.memory import FilmState
 from ehdmaps.maps.kernels.memory_table import NUMBERS
 from ehdmaps.maps.law import ContactLaw
+from mbs.bearings.bearing_element import FilmStates
 from mbs.bearings.laws import DryLaw
-from mbs.bearings.memory_element import FilmStates
 from mbs.bearings.rings import (
-    CourseRecord,
     Rings,
-    RingsRecord,
     alike_contacts,
     alone,
-    course_record,
     feels,
     folding_of,
     gather_rings,
     placed,
-    rings_record,
     strict,
 )
-from mbs.bearings.speed_tables import CourseOfFilms, Made, SpeedWindow, course_of
+from mbs.bearings.speed_tables import Course, CourseBlock, CourseOfFilms, Made, SpeedWindow, course_of
 from mbs.model.blocks import Kind, Member
 
 STEP = 4e-3
@@ -148,7 +144,7 @@ class MemoryBearings(Record):
 
     Attributes
     ----------
-    rings, course : RingsRecord, CourseRecord
+    rings, course : Rings, Course
         What does not change; places of the steps on the tables.
     nodes, most : int
         Tables of each film; slices of all rollers together, of the bearing that has most.
@@ -167,8 +163,8 @@ class MemoryBearings(Record):
     """
 
     _fields_ = (
-        ("rings", RingsRecord),
-        ("course", CourseRecord),
+        ("rings", Rings),
+        ("course", Course),
         *((name, ctypes.c_int64) for name in ("nodes", "most")),
         ("strict", integers),
         *((name, numbers) for name in ("memory", "states", "approaches", "work", "spent", "clock")),
@@ -177,13 +173,13 @@ class MemoryBearings(Record):
     shapes: ClassVar = {"approaches": ("most",), "work": ("most", 2), "clock": (4,)}
 
 
-class MemoryBlock:
+class MemoryBlock(CourseBlock):
     """The bearings with memory of a run; contacts with the same law at the same conditions share their tables.
 
     Parameters
     ----------
     members : sequence of Member
-        Elements of the class `MemoryBearing`, or of the class `MemoryRollers`.
+        Elements of the class `BearingElement`, or of the class `RollerElement`, whose films relax.
     """
 
     def __init__(self, members: Sequence[Member]) -> None:
@@ -192,20 +188,20 @@ class MemoryBlock:
         for one in alike:
             assert not isinstance(one.law.law, DryLaw)  # an element with memory refuses it
             laws.append(MemoryTables(one.law.law, one.temperature, one.rates[0]))
-        self._rings: Rings = gather_rings(members, films_of)
-        self._tables = np.zeros((len(laws), NODES, NUMBERS))
-        self._in_use = np.full((len(laws), 2), -1.0)
-        self._course = CourseOfFilms(
+        rings = gather_rings(members, films_of)
+        tables, in_use = np.zeros((len(laws), NODES, NUMBERS)), np.full((len(laws), 2), -1.0)
+        course = CourseOfFilms(
             [law.places for law in laws],
-            lambda film, *places: laws[film].prepare(*places, self._tables[film]),
+            lambda film, *places: laws[film].prepare(*places, tables[film]),
             in_turns=True,
         )
-        most = self._rings.most_slices
+        super().__init__(course, in_use)
+        most = rings.most
         self._memory = np.zeros((*films_of.shape, MEMORY * most))
         self._clock = np.array([math.nan, 0.0, math.nan, 0.0])
-        self._data = checked(MemoryBearings, "ehd_film_block")(
-            rings=rings_record(self._rings),
-            course=course_record(course_of(0, len(laws))),
+        self.data = checked(MemoryBearings, "ehd_film_block")(
+            rings=rings,
+            course=course_of(0, len(laws)),
             nodes=NODES,
             most=most,
             strict=strict(members).astype(np.int64),
@@ -215,39 +211,23 @@ class MemoryBlock:
             work=np.zeros(2 * most),
             spent=np.zeros(len(members)),
             clock=self._clock,
-            tables=self._tables,
+            tables=tables,
             mixed=np.zeros((len(laws), NUMBERS)),
-            in_use=self._in_use,
+            in_use=in_use,
         )
+        self._shapes = list(zip(rings.given("rollers").tolist(), rings.given("slices").tolist(), strict=True))
         self._folds = [folding_of(member.element.plain) for member in members]
-
-    def begin(self, speeds: FloatArray) -> None:
-        """Find the places of the speeds [rad/s] on the tables."""
-        self._course.begin(speeds)
-
-    def prepare(self, first: int, last: int) -> tuple[MemoryBearings, BoolArray]:
-        """Make the tables of the next steps, as many as are held at once.
-
-        Parameters
-        ----------
-        first, last : int
-            Steps of those that `begin` was told.
-        """
-        course, sound = self._course.prepare(first, last)
-        # To be mixed anew at its next turn: a turn of its own would be a kick.
-        self._in_use[:, 1] = math.nan
-        self._data.put(course=course_record(course))
-        return self._data, sound
 
     def states(self) -> list[FilmStates]:
         """Films of each bearing after the last step that was made."""
         last, time = float(self._clock[LAST]), float(self._clock[ACCEPTED])
         states = []
         for b, fold in enumerate(self._folds):
-            shape = int(self._rings.rollers[b]), int(self._rings.slices[b])
             films = []
             for memory in self._memories(b):
-                approach, change, load = (memory[row].reshape(shape)[:, fold.groups] for row in (LATEST, CHANGE, LOAD))
+                approach, change, load = (
+                    memory[row].reshape(self._shapes[b])[:, fold.groups] for row in (LATEST, CHANGE, LOAD)
+                )
                 films.append(FilmState(approach, change, load, last))
             states.append(FilmStates(tuple(films), time))
         return states
@@ -267,7 +247,7 @@ class MemoryBlock:
 
     def _memories(self, b: int) -> list[FloatArray]:
         """Memory of the slices of a bearing, side by side, (MEMORY, Z n) each."""
-        size = int(self._rings.rollers[b] * self._rings.slices[b])
+        size = math.prod(self._shapes[b])
         return [side[: MEMORY * size].reshape(MEMORY, size) for side in self._memory[b]]
 
 

@@ -26,10 +26,10 @@ from ehdmaps.kernel.library import checked
 from ehdmaps.kernel.record import Record, integers, numbers
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import FELT, LEVEL, BearingElement, RingElement
-from mbs.bearings.cylinder import Cylinder, cylinder_of
+from mbs.bearings.cylinder import cylinder_of
 from mbs.bearings.laws import FlatLaw
 from mbs.bearings.roller_element import RollerElement
-from mbs.bearings.speed_tables import Course, shared
+from mbs.bearings.speed_tables import shared
 from mbs.model.blocks import Member
 
 _TILTS = FELT[LEVEL:]
@@ -43,14 +43,20 @@ _SAME = 12
 _NO_DEPTH, _ROUND_OFF = 1e-30, 1e-12
 
 
-class Rings(NamedTuple):
-    """Bearings as arrays, one row a bearing; rows of slices and rollers are as long as the longest.
+_WHOLE = ("firsts", "places", "films_of", "rollers", "slices", "felt", "alone")
+_REAL = ("start_angles", "cage_rates", "sizes", "positions", "profiles", "weights", "cosine", "sine", "outward")
+
+
+class Rings(Record):
+    """Bearings as C has them, one row a bearing; rows of slices and rollers are as long as the longest: `ehd_rings`.
 
     A contact of a roller has one side, where both contacts in series stand for a massless roller, or two, the inner and
     the outer one of a roller that is a body. All bearings of a block have as many.
 
     Attributes
     ----------
+    count, sides, most_rollers, most_slices : int
+        How many bearings, and contacts of a roller; lengths of the rows of rollers and slices.
     firsts, places : array (bearings,), of int
         First of what each feels, its place among all elements.
     films_of : array (bearings, sides), of int
@@ -64,7 +70,7 @@ class Rings(NamedTuple):
         profile [m]; clearance and profiles are those of both contacts of a roller together.
     positions, profiles : array (bearings, n)
         Places of the slices along the roller, and twice the profile there [m]; the last one is no slice.
-    cos, sin : array (bearings, Z)
+    cosine, sine : array (bearings, Z)
         Directions of the rollers in the cage.
     felt : array (bearings,), of int
         How many displacements of rings each feels: 4, 2 of rings that do not tilt, 6 with rollers as bodies.
@@ -76,27 +82,23 @@ class Rings(NamedTuple):
         Centrifugal force of a roller that is a body by the square of the speed [N s2/rad2].
     """
 
-    firsts: IntArray
-    places: IntArray
-    films_of: IntArray
-    rollers: IntArray
-    slices: IntArray
-    start_angles: FloatArray
-    cage_rates: FloatArray
-    sizes: FloatArray
-    positions: FloatArray
-    profiles: FloatArray
-    cos: FloatArray
-    sin: FloatArray
-    felt: IntArray
-    weights: FloatArray
-    alone: IntArray
-    outward: FloatArray
+    _fields_ = (
+        *((name, ctypes.c_int64) for name in ("count", "sides", "most_rollers", "most_slices")),
+        *((name, integers) for name in _WHOLE),
+        *((name, numbers) for name in _REAL),
+    )
+    shapes: ClassVar = {
+        **dict.fromkeys((*_WHOLE, "start_angles", "cage_rates", "outward"), ("count",)),
+        "films_of": ("count", "sides"),
+        "sizes": ("count", len(_SIZES)),
+        **dict.fromkeys(("positions", "profiles", "weights"), ("count", "most_slices")),
+        **dict.fromkeys(("cosine", "sine"), ("count", "most_rollers")),
+    }
 
     @property
-    def most_slices(self) -> int:
+    def most(self) -> int:
         """Slices of all rollers together, of the bearing that has most."""
-        return int(np.max(self.rollers * self.slices, initial=0))
+        return int(np.max(self.given("rollers") * self.given("slices"), initial=0))
 
 
 def feels(element: RingElement) -> FloatArray:
@@ -201,7 +203,17 @@ def gather_rings(members: Sequence[Member], films_of: IntArray) -> Rings:
     plains: list[BearingElement] = [member.element.plain for member in members]
     shapes = [cylinder_of(element.bearing) for element in plains]
     folds = [folding_of(element) for element in plains]
-    return Rings(
+    positions, profiles = (
+        _padded([np.append(one.given(name)[fold.firsts], 0.0) for one, fold in zip(shapes, folds, strict=True)])
+        for name in ("position", "profile")
+    )
+    cosine, sine = (_padded([shape.given(name) for shape in shapes]) for name in ("cosine", "sine"))
+    count, sides = films_of.shape
+    return checked(Rings, "ehd_rings")(
+        count=count,
+        sides=sides,
+        most_rollers=cosine.shape[1],
+        most_slices=positions.shape[1],
         firsts=_whole(member.first for member in members),
         places=_whole(member.place for member in members),
         films_of=films_of,
@@ -209,26 +221,16 @@ def gather_rings(members: Sequence[Member], films_of: IntArray) -> Rings:
         slices=_whole(fold.firsts.size for fold in folds),
         start_angles=np.array([element.start_angle for element in plains], dtype=np.float64),
         cage_rates=np.array([element.rates[0] for element in plains], dtype=np.float64),
-        sizes=np.array([_sizes(shape) for shape in shapes], dtype=np.float64).reshape(len(shapes), 6),
-        positions=_slices_of([one.given("position")[fold.firsts] for one, fold in zip(shapes, folds, strict=True)]),
-        profiles=_slices_of([one.given("profile")[fold.firsts] for one, fold in zip(shapes, folds, strict=True)]),
-        cos=_padded([shape.given("cosine") for shape in shapes]),
-        sin=_padded([shape.given("sine") for shape in shapes]),
+        sizes=np.array([[getattr(one, name) for name in _SIZES] for one in shapes]).reshape(count, len(_SIZES)),
+        positions=positions,
+        profiles=profiles,
+        cosine=cosine,
+        sine=sine,
         felt=_whole(feels(member.element).shape[0] for member in members),
-        weights=_slices_of([fold.weights for fold in folds]),
+        weights=_padded([np.append(fold.weights, 0.0) for fold in folds]),
         alone=_whole(member.alone for member in members),
         outward=np.array([plain.rates[2] * plain.bearing.geometry.roller_length for plain in plains], dtype=np.float64),
     )
-
-
-def _sizes(shape: Cylinder) -> list[float]:
-    """Sizes of a bearing for compiled code."""
-    return [getattr(shape, name) for name in _SIZES]
-
-
-def _slices_of(rows: Sequence[FloatArray]) -> FloatArray:
-    """Numbers of slices as one array; each row has one more, which C reads without effect."""
-    return _padded([np.append(row, 0.0) for row in rows])
 
 
 def _padded(rows: Sequence[FloatArray]) -> FloatArray:
@@ -242,70 +244,3 @@ def _padded(rows: Sequence[FloatArray]) -> FloatArray:
 def _whole(numbers: Iterable[int]) -> IntArray:
     """Whole numbers as an array."""
     return np.array(list(numbers), dtype=np.int64)
-
-
-_WHOLE = ("firsts", "places", "films_of", "rollers", "slices", "felt", "alone")
-_REAL = ("start_angles", "cage_rates", "sizes", "positions", "profiles", "weights", "cosine", "sine", "outward")
-
-
-class RingsRecord(Record):
-    """Bearings, one row a bearing: the arrays of `mbs.bearings.rings.Rings`.
-
-    Attributes
-    ----------
-    count, sides : int
-        How many bearings, and contacts of a roller.
-    most_rollers, most_slices : int
-        Lengths of the rows of rollers and slices.
-    """
-
-    _fields_ = (
-        *((name, ctypes.c_int64) for name in ("count", "sides", "most_rollers", "most_slices")),
-        *((name, integers) for name in _WHOLE),
-        *((name, numbers) for name in _REAL),
-    )
-    shapes: ClassVar = {
-        **dict.fromkeys((*_WHOLE, "start_angles", "cage_rates", "outward"), ("count",)),
-        "films_of": ("count", "sides"),
-        "sizes": ("count", 6),
-        **dict.fromkeys(("positions", "profiles", "weights"), ("count", "most_slices")),
-        **dict.fromkeys(("cosine", "sine"), ("count", "most_rollers")),
-    }
-
-
-def rings_record(rings: Rings) -> RingsRecord:
-    """Bearings for C."""
-    count, sides = rings.films_of.shape
-    named = {name: getattr(rings, name) for name in (*_WHOLE, *_REAL) if name not in ("cosine", "sine")}
-    return checked(RingsRecord, "ehd_rings")(
-        count=count,
-        sides=sides,
-        most_rollers=rings.cos.shape[1],
-        most_slices=rings.positions.shape[1],
-        cosine=rings.cos,
-        sine=rings.sin,
-        **named,
-    )
-
-
-class CourseRecord(Record):
-    """Places of some steps on tables over the speed: the arrays of `mbs.bearings.speed_tables.Course`.
-
-    Attributes
-    ----------
-    films : int
-        How many tables.
-    """
-
-    _fields_ = (
-        ("films", ctypes.c_int64),
-        ("nodes", integers),
-        ("outside", integers),
-        ("weights", numbers),
-        ("kept", integers),
-    )
-
-
-def course_record(course: Course) -> CourseRecord:
-    """Course for C."""
-    return checked(CourseRecord, "ehd_film_course")(films=course.nodes.shape[1], **course._asdict())

@@ -19,6 +19,7 @@ import numpy.typing as npt
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, OutsideMapError, SolverError
 from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_force import AT_REST
 from mbs.bearings.laws import DryLaw, FlatLaw, Law, law_problems
 from mbs.bearings.slices_in_balance import Side
 from mbs.model.elements import Forces
@@ -29,8 +30,6 @@ if TYPE_CHECKING:
 
 
 _STEPS = 100
-AT_REST = 1e6
-"""A step so long that films are in equilibrium at its end [s]."""
 
 
 class RollerContacts:

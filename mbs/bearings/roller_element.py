@@ -5,23 +5,25 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import InputError
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_element import BearingElement, RingElement
+from mbs.bearings.bearing_element import NO_FILMS, BearingElement, RingElement
 from mbs.bearings.contact_energy import brought_by_speed, cage_moment, energy_at_rest
 from mbs.bearings.laws import FlatLaw, Law
 from mbs.bearings.roller_contacts import RollerContacts
 from mbs.model.body import Body
-from mbs.model.elements import Excitation, Forces, Operation, Port, Powers
+from mbs.model.elements import Excitation, Forces, Operation, Port
 from mbs.model.findings import Gauge
 from mbs.model.on_rings import ring_motion
 from mbs.model.relaxation import Films, Relaxation
 
 if TYPE_CHECKING:
+    from ehdmaps.maps.kernels.memory import FilmMemory, FilmState
     from mbs.bearings.slices_in_balance import Side
 
 
@@ -63,6 +65,10 @@ class RollerElement(RingElement):
     contacts: RollerContacts
     rollers: str
     films: Films = "slow"
+
+    def __post_init__(self) -> None:
+        if self.relaxes and not self.film_laws:
+            raise InputError(f"bearing {self.name!r}, films: {NO_FILMS}")
 
     @property
     def name(self) -> str:
@@ -149,12 +155,18 @@ class RollerElement(RingElement):
         forces.force[12:] += self.outward(operation)
         return forces
 
-    def powers(
-        self, states: Any, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
-    ) -> Powers:
-        """Power that its contacts dissipate; power that cage and centrifugal forces bring in, see `Element.powers`."""
-        at_rest = self.evaluate(displacement, np.zeros_like(velocity), operation).force
-        return Powers(-float((force - at_rest) @ velocity), self.brought_in(at_rest, displacement, velocity, operation))
+    def in_time(self, operation: Operation) -> tuple[tuple[FilmMemory, ...], float]:
+        """See `RingElement.in_time`."""
+        memories = self.contacts.memories(self.plain.entrainment_speed(operation), self.plain.temperature)
+        return memories, self.plain.bearing.slice_length
+
+    def advance_films(
+        self, before: tuple[FilmState, ...] | None, displacement: FloatArray, dt: float, operation: Operation
+    ) -> tuple[Forces, tuple[FilmState, ...]]:
+        """Forces and films after a step, see `RingElement.advance_films`."""
+        forces, films = self.contacts.advance(before, displacement, dt, **self.plain.conditions(operation))
+        forces.force[12:] += self.outward(operation)
+        return forces, films
 
     def brought_in(
         self, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
@@ -163,8 +175,8 @@ class RollerElement(RingElement):
         turning = cage_moment(force, displacement, 2) * self.plain.rates[0] * operation.speed
         return turning + self.outward(operation) * float(np.sum(velocity[12:]))
 
-    def stored(self, states: Any, displacement: FloatArray, operation: Operation) -> float:
-        """Energy of its contacts at rest [J], without that of a centrifugal field; see `Element.stored`."""
+    def stored_at_rest(self, displacement: FloatArray, operation: Operation) -> float:
+        """See `RingElement.stored_at_rest`; without that of a centrifugal field."""
         plain, contacts = self.plain, self.contacts
         conditions = plain.entrainment_speed(operation), plain.temperature, 0.0
         approaches = contacts.approaches(displacement, plain.cage_angle(operation))

@@ -15,6 +15,7 @@ one.
 
 from __future__ import annotations
 
+import ctypes
 import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, NamedTuple
@@ -22,6 +23,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
+from ehdmaps.kernel.library import checked
+from ehdmaps.kernel.record import Record, integers, numbers
 from mbs.bearings import cylinder as table
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.cylinder import FILM_ALONE, WHOLE, LawRoom
@@ -306,11 +309,13 @@ def _told(sound: bool, outside: bool, numbers: FloatArray) -> Made:
     return Made(sound, outside, 2 * int(numbers[_KIND]) + int(outside))
 
 
-class Course(NamedTuple):
-    """Places of the tables of some steps.
+class Course(Record):
+    """Places of the tables of some steps: `ehd_film_course`.
 
     Attributes
     ----------
+    films : int
+        How many tables.
     nodes, weights : array (steps, films)
         Node below the speed, and the part of the way to the next one.
     outside : array (steps, films), of int
@@ -319,10 +324,12 @@ class Course(NamedTuple):
         Steps for which what was read from the tables holds.
     """
 
-    nodes: IntArray
-    weights: FloatArray
-    outside: IntArray
-    kept: IntArray
+    _fields_ = (
+        ("films", ctypes.c_int64),
+        *((name, integers) for name in ("nodes", "outside")),
+        ("weights", numbers),
+        ("kept", integers),
+    )
 
 
 MOST_KEPT = 8
@@ -386,19 +393,53 @@ class CourseOfFilms:
         ]
         count = min((slots.size for slots, _, _, _ in films), default=last - first)
         course, whole = course_of(count, len(films)), np.ones(count, dtype=np.bool_)
-        course.kept[:] = self._kept[first : first + count]
+        course.given("kept")[:] = self._kept[first : first + count]
         for film, (slots, sound, outside, weights) in enumerate(films):
-            course.nodes[:, film], course.weights[:, film] = slots[:count], weights[:count]
-            course.outside[:, film] = outside[:count]
+            for name, values in (("nodes", slots), ("weights", weights), ("outside", outside)):
+                course.given(name)[:, film] = values[:count]
             whole &= sound[:count]
         return course, whole
 
 
 def course_of(steps: int, films: int) -> Course:
     """Room for the course of some steps."""
-    shape = (steps, films)
-    nodes, outside = np.zeros((2, *shape), dtype=np.int64)
-    return Course(nodes, np.zeros(shape), outside, np.ones(steps, dtype=np.int64))
+    nodes, outside = np.zeros((2, steps, films), dtype=np.int64)
+    kept = np.ones(steps, dtype=np.int64)
+    weights = np.zeros((steps, films))
+    return checked(Course, "ehd_film_course")(films=films, nodes=nodes, outside=outside, weights=weights, kept=kept)
+
+
+class CourseBlock:
+    """Bearings of a run whose laws are tables over the speed, see `mbs.model.blocks.Block`; kinds inherit from it.
+
+    Attributes
+    ----------
+    data : Record
+        The bearings as C takes them; its `course` has the places of the steps on the tables.
+    """
+
+    data: Record
+
+    def __init__(self, course: CourseOfFilms, in_use: FloatArray) -> None:
+        self._course, self._in_use = course, in_use
+
+    def begin(self, speeds: FloatArray) -> None:
+        """Find the places of the speeds [rad/s] on the tables."""
+        self._course.begin(speeds)
+
+    def prepare(self, first: int, last: int) -> tuple[Record, BoolArray]:
+        """Make the tables of the next steps, as many as are held at once.
+
+        Parameters
+        ----------
+        first, last : int
+            Steps of those that `begin` was told.
+        """
+        course, sound = self._course.prepare(first, last)
+        # slots have other tables now; films with memory mix them at their next turn: a turn of its own would be a kick
+        self._in_use[:, 1] = math.nan
+        self.data.put(course=course)
+        return self.data, sound
 
 
 def _kept(places: Sequence[Places], steps: int) -> IntArray:

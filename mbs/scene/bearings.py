@@ -162,13 +162,8 @@ def build_bearing(spec: BearingSpec, surroundings: Surroundings) -> Built:
     )
     supply = surroundings.laws.supply(spec)
     laws = surroundings.laws.of(bearing, supply)
-    memory = surroundings.laws.memory == "memory"
-    kind = BearingElement
-    if memory and not spec.rollers_as_bodies:
-        from mbs.bearings.memory_element import MemoryBearing
-
-        kind = MemoryBearing
-    plain = kind(
+    films = surroundings.laws.memory
+    plain = BearingElement(
         name=spec.name,
         inner=spec.inner,
         outer=spec.outer,
@@ -179,6 +174,7 @@ def build_bearing(spec: BearingSpec, surroundings: Surroundings) -> Built:
         outer_spin=surroundings.places.spin(spec.outer),
         start_angle=spec.start_angle,
         centrifugal=spec.centrifugal,
+        films="slow" if spec.rollers_as_bodies else films,
         source=surroundings.laws.films(bearing, supply),
     )
     if not spec.rollers_as_bodies:
@@ -187,9 +183,4 @@ def build_bearing(spec: BearingSpec, surroundings: Surroundings) -> Built:
     from mbs.bearings.roller_element import RollerElement, roller_body
 
     body = roller_body(f"{spec.name}_rollers", bearing)
-    contacts = RollerContacts(bearing, *laws.single)
-    if not memory:
-        return Built(RollerElement(plain, contacts, body.name), plain, (body,))
-    from mbs.bearings.memory_element import MemoryRollers
-
-    return Built(MemoryRollers(plain, contacts, body.name), plain, (body,))
+    return Built(RollerElement(plain, RollerContacts(bearing, *laws.single), body.name, films), plain, (body,))

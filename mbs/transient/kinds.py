@@ -16,7 +16,6 @@ from mbs.bearings.bearing_block import BEARINGS, ROLLERS
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.bearings.memory_block import MEMORY_BEARINGS, MEMORY_ROLLERS
-from mbs.bearings.memory_element import MemoryBearing, MemoryRollers
 from mbs.bearings.roller_element import RollerElement
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_block import TAPERED
@@ -29,9 +28,7 @@ from mbs.model.matrix_block import MATRICES
 
 KINDS: dict[type, Kind] = {
     BearingElement: BEARINGS,
-    MemoryBearing: MEMORY_BEARINGS,
     RollerElement: ROLLERS,
-    MemoryRollers: MEMORY_ROLLERS,
     BallForce: BALLS,
     TaperedForce: TAPERED,
     GearMesh: GEAR_MESHES,
@@ -43,7 +40,12 @@ KINDS: dict[type, Kind] = {
 """
 
 
+WITH_MEMORY: dict[type, Kind] = {BearingElement: MEMORY_BEARINGS, RollerElement: MEMORY_ROLLERS}
+"""The same where films relax, of bearings whose blocks do not have both."""
+
+
 def kind_of(element: Element) -> Kind | None:
     """Kind of an element in compiled code; None if it has none. A class that inherits from a known one is another."""
-    kind = KINDS.get(type(element.force if isinstance(element, LocatingElement) else element))
+    of = type(element.force if isinstance(element, LocatingElement) else element)
+    kind = (WITH_MEMORY if getattr(element, "relaxes", False) and of in WITH_MEMORY else KINDS).get(of)
     return kind if kind is not None and kind.takes(element) else None

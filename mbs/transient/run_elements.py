@@ -14,7 +14,7 @@ from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from mbs.model.blocks import Block, Kind, Member, StatefulBlock
 from mbs.model.system import Connected
 from mbs.transient.block_functions import BlockFunctions
-from mbs.transient.kinds import KINDS, kind_of
+from mbs.transient.kinds import KINDS, WITH_MEMORY, kind_of
 
 
 def in_python(connected: Sequence[Connected]) -> list[str]:
@@ -80,7 +80,7 @@ class RunElements:
             The elements.
         """
         connected = [_placed(entry) for entry in connected]
-        members: dict[Kind, list[Member]] = {kind: [] for kind in KINDS.values()}
+        members: dict[Kind, list[Member]] = {kind: [] for kind in (*KINDS.values(), *WITH_MEMORY.values())}
         of_connected = [kind_of(entry.element) for entry in connected]
         alone, felt = [], []
         for kind, entry in zip(of_connected, connected, strict=True):

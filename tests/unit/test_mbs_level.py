@@ -12,7 +12,6 @@ from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import hertz
 from mbs.bearings.memory_block import MemoryBlock
-from mbs.bearings.memory_element import MemoryBearing
 from mbs.bearings.rings import LEVEL, feels, folding_of, placed
 from mbs.bearings.speed_tables import SpeedWindow
 from mbs.model.blocks import Member
@@ -34,8 +33,8 @@ def system(law=None, profile="iso", freedoms=("y", "z"), memory=False):
     """A shaft on a bearing, which a load that jumps excites."""
     bearing = Bearing.named("NU308", clearance=5e-6, profile=profile, slices=9)
     force = BearingForce(bearing, law or hertz(bearing, 100.0))
-    kind = MemoryBearing if memory else BearingElement
-    element = kind("bearing", "shaft", "ground", bearing, force, TEMPERATURE)
+    films = "memory" if memory else "slow"
+    element = BearingElement("bearing", "shaft", "ground", bearing, force, TEMPERATURE, films=films)
     body = rigid_body("shaft", [Inertia(2.0, 0.01, 0.02)], freedoms, spin=1.0)
     return System([body], loads=[Load("weight", "shaft", LOAD)], elements=[element])
 

@@ -17,10 +17,10 @@ from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.oil_supply import OilSupply
 from mbs import assemble, read_scene
 from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import hertz
 from mbs.bearings.memory_block import MEMORY, STEP, resume
-from mbs.bearings.memory_element import MemoryBearing
 from mbs.bearings.speed_tables import MOST_KEPT, CourseOfFilms
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
@@ -42,7 +42,7 @@ def law(outside="clamp"):
 def bearing(outside="clamp", **changes):
     shape = Bearing(dataclasses.replace(NU308, diametral_clearance=20e-6), slices=9)
     force = BearingForce(shape, law(outside))
-    return MemoryBearing("b", "shaft", "housing", shape, force, 330.0, **changes)
+    return BearingElement("b", "shaft", "housing", shape, force, 330.0, films="memory", **changes)
 
 
 @functools.cache
@@ -197,11 +197,11 @@ def test_tables_are_kept_as_long_as_the_speed_allows():
     found = {}
     for rise in (0.0, 2e-6, 1e-5, 3e-5, 1e-3):
         course.begin(100.0 * np.exp(rise * np.arange(20)))
-        found[rise] = course.prepare(5, 20)[0].kept
+        found[rise] = course.prepare(5, 20)[0].given("kept")
     assert all(kept.shape == (15,) and np.all(kept == kept[0]) for kept in found.values())
     assert [int(kept[0]) for kept in found.values()] == [MOST_KEPT, MOST_KEPT, 4, 2, 1]
     course.begin(np.array([100.0]))
-    assert course.prepare(0, 1)[0].kept.tolist() == [1]
+    assert course.prepare(0, 1)[0].given("kept").tolist() == [1]
 
 
 def test_slices_lag_behind_the_speed_by_nothing_on_the_mean():
@@ -222,12 +222,13 @@ def test_slices_lag_behind_the_speed_by_nothing_on_the_mean():
     steps, slices = 64, np.arange(24)
     speeds = 100.0 * np.exp(1e-5 * 0.6 * np.arange(steps))
     course.begin(speeds)
-    read = course.prepare(0, steps)[0]
+    found = course.prepare(0, steps)[0]
+    nodes, weights, kept_for = (found.given(name) for name in ("nodes", "weights", "kept"))
     table, held = math.nan, np.full(slices.size, math.nan)
     right = np.log(speeds / 50.0) / STEP
-    for step, kept in enumerate(read.kept.tolist()):
+    for step, kept in enumerate(kept_for.tolist()):
         if step % kept == 0:
-            table = read.nodes[step, 0] + read.weights[step, 0]
+            table = nodes[step, 0] + weights[step, 0]
         held[(step + slices) % kept == 0] = table
         if step >= 16:
             assert np.mean(held) == pytest.approx(right[step], abs=1e-9)
@@ -309,6 +310,6 @@ def test_loads_above_the_map_are_refused_or_counted():
 def test_what_has_no_memory_is_refused():
     shape = Bearing(NU308)
     with pytest.raises(InputError, match="films: got 'memory' with a law without films; allowed: laws map and formula"):
-        MemoryBearing("b", "shaft", "housing", shape, BearingForce(shape, hertz(shape)), 330.0)
+        BearingElement("b", "shaft", "housing", shape, BearingForce(shape, hertz(shape)), 330.0, films="memory")
     with pytest.raises(InputError, match="films: got 'memory' with centrifugal"):
         bearing(centrifugal=True)

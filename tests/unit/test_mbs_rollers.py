@@ -18,7 +18,6 @@ from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import hertz
 from mbs.bearings.memory_block import MEMORY_ROLLERS
-from mbs.bearings.memory_element import MemoryRollers
 from mbs.bearings.roller_contacts import RollerContacts
 from mbs.bearings.roller_element import RollerElement
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Member, Moment
@@ -42,8 +41,7 @@ def element(films, outside="clamp", centrifugal=True):
     plain = BearingElement("b", "shaft", "housing", BEARING, force, 330.0, start_angle=0.3, centrifugal=centrifugal)
     single = hertz(BEARING, 100.0).single()
     laws = (single, single) if films == "dry" else (law("inner", outside), law("outer", outside))
-    kind = MemoryRollers if films == "memory" else RollerElement
-    return kind(plain, RollerContacts(BEARING, *laws), "rollers")
+    return RollerElement(plain, RollerContacts(BEARING, *laws), "rollers", "memory" if films == "memory" else "slow")
 
 
 def displaced(seed=1):
@@ -191,7 +189,7 @@ def test_loads_above_the_map_are_refused_or_counted():
 def test_memory_needs_films():
     with pytest.raises(InputError, match="films: got 'memory' with a law without films; allowed: laws map and formula"):
         dry = element("dry")
-        MemoryRollers(dry.plain, dry.contacts, "rollers")
+        RollerElement(dry.plain, dry.contacts, "rollers", "memory")
     with pytest.raises(InputError, match="roller contacts, films: got the law 'hertz' without films; allowed: map"):
         element("dry").contacts.advance(
             None, displaced()[0], 0.0, cage_angle=0.0, entrainment_speed=1.0, temperature=330.0

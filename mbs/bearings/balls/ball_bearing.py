@@ -213,10 +213,6 @@ class BallForce(LocatingForce):
 
         return ball_dynamic_rating(self.geometry), ball_static_rating(self.geometry)
 
-    def with_material(self, material: Material) -> BallForce:
-        """See `LocatingForce.with_material`."""
-        return BallForce(self.geometry, self.law, material)
-
     @property
     def shape(self) -> BallShape:
         """Lengths of the bearing."""

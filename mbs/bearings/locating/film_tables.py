@@ -239,7 +239,7 @@ class FilmCourse:
         """
         course, sound = self._course.prepare(first, last)
         self.data.given("in_use")[:, 1] = math.nan  # to be mixed anew
-        self.data.put(steps=sound.size, nodes=course.nodes, weights=course.weights)
+        self.data.put(steps=sound.size, nodes=course.given("nodes"), weights=course.given("weights"))
         return sound
 
     def _made(self, film: int, speeds: FloatArray, nodes: IntArray, weights: FloatArray) -> Prepared:

@@ -43,7 +43,7 @@ class PairBlock(Record):
     last, times, works : array (count, longest, 4), (count,), (count,)
         What `LocatingForce.work` keeps of the last step, its time [s], and its work by that time [W].
     memories, memory : array (count,), of int, (numbers,)
-        Where the memory of a bearing begins, < 0 without one; memory of the contacts of all bearings,
+        First number of the memory of a bearing, < 0 without one; memory of the contacts of all bearings,
         (Z, 2, rows, n) each, see `mbs.bearings.locating.film_memory`.
     clock : array (2,)
         Times at the end of the last step that was made, and of the step for which films hold [s].

@@ -280,16 +280,6 @@ class LocatingForce:
         """C of ISO 281 and C0 of ISO 76 by the inner geometry [N]."""
         raise NotImplementedError
 
-    def with_material(self, material: Material) -> LocatingForce:
-        """The same bearing with rolling elements of another density.
-
-        Parameters
-        ----------
-        material : Material
-            Material of the elements.
-        """
-        raise NotImplementedError
-
     @property
     def contacts(self) -> tuple[int, int, int]:
         """Contacts of all elements: Z, 2, and slices of each."""

@@ -249,12 +249,6 @@ class TaperedForce(LocatingForce):
 
         return tapered_ratings(self.geometry)
 
-    def with_material(self, material: Material) -> TaperedForce:
-        """See `LocatingForce.with_material`; contacts keep that of before."""
-        other = self.with_films(self.films)
-        other.material = material
-        return other
-
     def speed_loads(
         self, inner_speed: float, outer_speed: float = 0.0, cage_speed: float | None = None
     ) -> tuple[float, float]:
