@@ -13,7 +13,7 @@ from mbs.bearings.tapered.tapered_bearing import TaperedForce
 def made_up_films(geometry):
     """Lines with films of some shape by the entrainment speed: offset, soft begin and damping."""
     length = geometry.roller_length
-    stiff = TaperedForce(geometry).laws.cone / length
+    stiff = TaperedForce(geometry).dry_law.inner.coefficient / length
 
     def made_up(u, temperature):
         def evaluate(delta, rate):

@@ -42,8 +42,8 @@ def left(force, loads):
         v, d, f = row[9:12], row[12:15], np.array([0.0, *loads])
         arm, size = abs(force.shape.levers[-1]), np.abs(f).sum()
         for sign, moved, normal, c in (
-            (-1, v, force.shape.cup, force.laws.cup),
-            (1, d - v, force.shape.cone, force.laws.cone),
+            (-1, v, force.shape.cup, force.dry_law.inner.coefficient),
+            (1, d - v, force.shape.cone, force.dry_law.inner.coefficient),
         ):
             depth = np.dot(normal, moved[:2]) + moved[2] * force.shape.levers - force.shape.profile
             q = c / depth.size * np.maximum(depth, 0.0) ** (10.0 / 9.0)

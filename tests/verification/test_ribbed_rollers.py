@@ -29,7 +29,7 @@ def by_points(force: TaperedForce, pose: np.ndarray, centrifugal: float) -> np.n
     """Force on the inner ring: each contact by where its point goes, both bodies rigid, rollers balanced by scipy."""
     geometry, total = force.geometry, np.zeros(6)
     sphere, half, at = geometry.end_sphere, 0.5 * geometry.roller_length, force.positions
-    single, play = force.laws.cup / at.size, 0.25 * geometry.diametral_clearance
+    single, play = force.dry_law.inner.coefficient / at.size, 0.25 * geometry.diametral_clearance
     angle = math.asin(geometry.rib_lever / sphere)
     for j in range(geometry.rollers):
         c, s = (turn(2.0 * math.pi * j / geometry.rollers) for turn in (math.cos, math.sin))

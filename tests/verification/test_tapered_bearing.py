@@ -41,7 +41,7 @@ def in_space(
     """Force and moments on the inner ring, all contacts by points and normals in space, rollers balanced by scipy."""
     geometry, total = force.geometry, np.zeros(6)
     theta, beta, half = geometry.axis_angle, geometry.half_cone_angle, 0.5 * geometry.roller_diameter
-    single = force.laws.cup / force.positions.size
+    single = force.dry_law.inner.coefficient / force.positions.size
     for j in range(geometry.rollers):
         angle = 2.0 * math.pi * j / geometry.rollers
         out = np.array([0.0, math.cos(angle), math.sin(angle)])
@@ -212,10 +212,10 @@ def test_an_axial_load_is_shared_by_the_closed_form() -> None:
     """Three forces on a roller: those of cone and rib follow from that of the cup, and so does the approach."""
     force = TaperedForce(GEOMETRY, profile="straight")
     f, K, _ = force([20e-6, 0.0, 0.0, 0.0, 0.0, 0.0])
-    shape, law = force.shape, force.laws
+    shape, single = force.shape, force.dry_law.inner.coefficient
     shares = np.linalg.solve(np.array([shape.cone, shape.ribs.normals[0]]).T, np.array(shape.cup))
     cup = -f[0] / (GEOMETRY.rollers * shape.cup[0])
-    line = (np.array([cup, shares[0] * cup]) / law.cup) ** 0.9
+    line = (np.array([cup, shares[0] * cup]) / single) ** 0.9
     rib = (shares[1] * cup / shape.ribs.laws[0]) ** (2.0 / 3.0)
     # rollers tilt until the lines of the three forces meet, 0.13 mm beside their middles: 5e-4 of the approach
     approach = line[0] + shares[0] * line[1] + shares[1] * rib
@@ -315,12 +315,12 @@ def test_slow_motion_is_that_of_all_contacts(geometry) -> None:
     _, stiffness, damping = force(pose, cage_angle=0.3, inner_speed=700.0)
     shape, rows, slow = force.shape, force.last_rollers, np.zeros((2, 6, 6))
     lines = [np.column_stack([np.tile(e, (5, 1)), shape.levers]) for e in (shape.cone, shape.cup)]
-    ribs, soft = np.column_stack([shape.ribs.normals, shape.ribs.levers]), 2e-14 * (force.laws.cup + force.laws.cone)
+    ribs, soft = np.column_stack([shape.ribs.normals, shape.ribs.levers]), 2e-14 * 2.0 * force.dry_law.inner.coefficient
     for row, moves in zip(rows, by_pose(force, 0.3), strict=True):
         place, ring = row[9:12], row[12:15]
         both = np.zeros((2, 6, 6))  # springs and dampers by ring and roller, the first and the last three
-        parts = [(lines[0], 0, shape.profile, force.laws.cone / 5, 10.0 / 9.0, 2.0)]
-        parts += [(lines[1], 1, shape.profile, force.laws.cup / 5, 10.0 / 9.0, 2.0)]
+        parts = [(lines[0], 0, shape.profile, force.dry_law.inner.coefficient / 5, 10.0 / 9.0, 2.0)]
+        parts += [(lines[1], 1, shape.profile, force.dry_law.inner.coefficient / 5, 10.0 / 9.0, 2.0)]
         parts += [(ribs[m : m + 1], int(shape.ribs.outer[m]), shape.ribs.plays[m], shape.ribs.laws[m], 1.5, 10.0)
                   for m in range(len(force.ribs))]  # fmt: skip
         for normals, outer, depth, law, power, constant in parts:

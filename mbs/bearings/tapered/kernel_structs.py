@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from ctypes import Array, c_double, c_int64, c_void_p
-from typing import Any, ClassVar, NamedTuple
+from ctypes import c_double, c_int64, c_void_p
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.kernel.library import checked, function
 from ehdmaps.kernel.record import Record, numbers
-from mbs.bearings.locating.normal_law import LawData, NormalLaw, law_data
+from mbs.bearings.locating.normal_law import LawData, NormalLaw
 
 RIB_NUMBERS = 6
 """Numbers of a rib, see `rib_rows`."""
@@ -75,32 +75,6 @@ class TaperedShape(NamedTuple):
     sin: FloatArray
     most_travel: float
     most_tilt: float
-
-
-class RollerLaws(NamedTuple):
-    """Laws of the contacts of a roller.
-
-    Attributes
-    ----------
-    cup, cone : float
-        C of the whole roller [N/m^(10/9)].
-    damping : float
-        Constant damping of each contact while it carries load [N s/m]; of lines, for the whole roller.
-    damping_time : float
-        Damping over stiffness of each contact [s].
-    cup_film, cone_film : NormalLaw
-        Tables of a whole roller with films; without a table for dry lines.
-    relaxes : bool
-        Whether films have a memory over a step, see `mbs.bearings.locating.film_memory`.
-    """
-
-    cup: float
-    cone: float
-    damping: float
-    damping_time: float
-    cup_film: NormalLaw
-    cone_film: NormalLaw
-    relaxes: bool
 
 
 class TaperedData(Record):
@@ -191,15 +165,15 @@ def rib_rows(ribs: Ribs) -> FloatArray:
     return np.ascontiguousarray(np.column_stack(rows))
 
 
-def data_of(shape: TaperedShape, laws: RollerLaws) -> TaperedData:
+def data_of(shape: TaperedShape, line: NormalLaw) -> TaperedData:
     """The numbers of a bearing.
 
     Parameters
     ----------
     shape : TaperedShape
         Lengths, with the play of the raceways in its profile.
-    laws : RollerLaws
-        Laws of the contacts.
+    line : NormalLaw
+        Law of a dry line, whole rollers; ribs have its dampers.
     """
     return TaperedData(
         rollers=shape.cos.size,
@@ -210,40 +184,12 @@ def data_of(shape: TaperedShape, laws: RollerLaws) -> TaperedData:
         cone=np.array(shape.cone),
         most_travel=shape.most_travel,
         most_tilt=shape.most_tilt,
-        hard=laws.cup + laws.cone,
-        damping=laws.damping,
-        damping_time=laws.damping_time,
+        hard=2.0 * line.coefficient,
+        damping=line.damping,
+        damping_time=line.damping_time,
         rib=rib_rows(shape.ribs),
         lever=shape.levers,
         profile=shape.profile,
         cosine=shape.cos,
         sine=shape.sin,
     )
-
-
-def line_law(film: NormalLaw, coefficient: float, laws: RollerLaws) -> LawData:
-    """The law of a line.
-
-    Parameters
-    ----------
-    film : NormalLaw
-        Table of a whole roller with a film; without a table for a dry line.
-    coefficient : float
-        C of a dry line [N/m^(10/9)].
-    laws : RollerLaws
-        Dampers of dry contacts.
-    """
-    dry = film._replace(coefficient=coefficient, damping=laws.damping, damping_time=laws.damping_time)
-    return law_data(film if film.table.size else dry)
-
-
-def both_lines(laws: RollerLaws) -> tuple[Array[Any], tuple[LawData, LawData]]:
-    """Laws of cone and cup as C reads them, and what they must be kept with.
-
-    Parameters
-    ----------
-    laws : RollerLaws
-        Laws of the contacts.
-    """
-    kept = line_law(laws.cone_film, laws.cone, laws), line_law(laws.cup_film, laws.cup, laws)
-    return (LawData * 2)(*kept), kept

@@ -113,7 +113,7 @@ def _lines(force: TaperedForce, cage_angle: float, on: BoolArray) -> _Lines:
     normals, outer = np.column_stack([ribs.normals, ribs.levers]), ribs.outer[:, None]
     feel[:, 2 * n :, :3], feel[:, 2 * n :, 3:] = np.where(outer, 0.0, normals), np.where(outer, normals, -normals)
     k[:, 2 * n :] = 1.5 * np.cbrt(rows[:, FIRST_RIB : FIRST_RIB + ribs.levers.size]) * np.cbrt(ribs.laws) ** 2
-    soft = SOFT * (force.laws.cup + force.laws.cone)
+    soft = 2.0 * SOFT * force.dry_law.inner.coefficient
     turning[:, 3:, 3:] = np.diag(soft * np.array([1.0, 1.0, shape.levers[-1] ** 2]))
     contacts = Contacts(feel, turning, k, c, np.ones((*k.shape, 1)), times[..., None])
     return _Lines(contacts, by_pose(force, cage_angle)[on], approaches)

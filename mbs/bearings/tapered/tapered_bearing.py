@@ -45,7 +45,7 @@ from ehdmaps.physics.surface import iso_profile
 from mbs.bearings.laws import roller_coefficient
 from mbs.bearings.locating.film_memory import rows_of, springs_of
 from mbs.bearings.locating.locating_force import Loads, LocatingForce, directions, later
-from mbs.bearings.locating.normal_law import contacts_at
+from mbs.bearings.locating.normal_law import LawData, NormalLaw, contacts_at, law_data
 from mbs.bearings.tapered.kernel_structs import (
     ANSWER,
     COLUMNS,
@@ -53,13 +53,11 @@ from mbs.bearings.tapered.kernel_structs import (
     PLACE,
     RING,
     Ribs,
-    RollerLaws,
     TaperedShape,
-    both_lines,
     data_of,
     functions,
 )
-from mbs.bearings.tapered.line_film import DRY_LINES, LineFilms, cylinder_of
+from mbs.bearings.tapered.line_film import LineFilms, cylinder_of
 
 if TYPE_CHECKING:
     from mbs.life import ReferenceLife
@@ -143,7 +141,7 @@ class TaperedForce(LocatingForce):
     """
 
     rolling_element = "roller"
-    shorter, dry_law = (1.0,), DRY_LINES
+    shorter = (1.0,)
     gauge = later("tapered.roller_findings", "roller_gauge")
     felt = later("tapered.roller_report", "roller_contacts")
     relaxation = later("tapered.rollers_in_balance", "line_relaxation")
@@ -156,7 +154,7 @@ class TaperedForce(LocatingForce):
         damping: float = 0.0,
         damping_time: float = 0.0,
         *,
-        films: LineFilms = DRY_LINES,
+        films: LineFilms | None = None,
         profile: str | Callable[[FloatArray], FloatArray] = "iso",
         slices: int = SLICES,
         material: Material = STEEL,
@@ -204,16 +202,18 @@ class TaperedForce(LocatingForce):
         )
         # each raceway takes half of the total approach at the same load
         single = 2.0 ** (10.0 / 9.0) * roller_coefficient(length, material)
-        self.films = films
-        self.laws = RollerLaws(single, single, self.damping, self.damping_time, films.outer, films.inner, False)
+        line = NormalLaw(single, self.damping, self.damping_time)
+        self.dry_law = LineFilms(line, line)
         self.angles, self.slices, self._way = places, slices, way
-        self._data, self._kernel = data_of(self.shape, self.laws), functions().force
-        self._begin()
+        self._data, self._kernel = data_of(self.shape, line), functions().force
+        self._begin(films or self.dry_law)
 
-    def _begin(self) -> None:
+    def _begin(self, films: LineFilms) -> None:
         """Make what the kernel reads of the laws, and the arrays that it writes."""
+        self.films = self.dry_law if films.dry else films
         self.film_loads = self.films.loads
-        self._lines, self._kept = both_lines(self.laws)
+        self._kept = [law_data(law) for law in self.films.sides]
+        self._lines = (LawData * 2)(*self._kept)
         self._given, self._answer = np.zeros((2, 6)), np.zeros(ANSWER)
         self._rollers = np.zeros((self.geometry.rollers, COLUMNS))
         self._out = self._answer[:6], self._answer[6:42].reshape(6, 6), self._answer[42:].reshape(6, 6)
@@ -238,8 +238,7 @@ class TaperedForce(LocatingForce):
     def with_films(self, films: LineFilms) -> TaperedForce:
         """See `LocatingForce.with_films`."""
         other = copy.copy(self)
-        other.films, other.laws = films, self.laws._replace(cup_film=films.outer, cone_film=films.inner)
-        other._begin()
+        other._begin(films)
         return other
 
     @property
@@ -269,11 +268,9 @@ class TaperedForce(LocatingForce):
         for side, (normal, moved) in enumerate(((shape.cone, ring - place), (shape.cup, place))):
             approach = normal[0] * moved[0] + normal[1] * moved[1]
             depth = approach[:, None] + moved[2][:, None] * shape.levers - shape.profile
-            each = (self.laws.cone, self.laws.cup)[side] / self.geometry.roller_length
-            slices[side] = each * np.maximum(depth, 0.0) ** (10.0 / 9.0)
-            if not self.films.dry:
-                law = (self.films.inner, self.films.outer)[side]
-                slices[side] = contacts_at(law, depth)[0] / self.geometry.roller_length
+            law = self.films.sides[side]
+            dry = law.coefficient * np.maximum(depth, 0.0) ** (10.0 / 9.0)
+            slices[side] = (dry if self.films.dry else contacts_at(law, depth)[0]) / self.geometry.roller_length
         half, diameter = self.geometry.half_cone_angle, self.geometry.roller_diameter
         centre = (self._way * rows[6:8] + 0.5 * diameter * math.sin(half)) * math.cos(half)
         ribs = rows[FIRST_RIB : FIRST_RIB + len(self.ribs)]
@@ -295,7 +292,7 @@ class TaperedForce(LocatingForce):
 
     def stored(self) -> float:
         """See `LocatingForce.stored`."""
-        return dry_energy(self.laws, self.shape, self._rollers)
+        return dry_energy(self.dry_law.inner, self.shape, self._rollers)
 
     def go_on(self, memory: FloatArray) -> None:
         """See `LocatingForce.go_on`."""
@@ -341,13 +338,13 @@ def place_work(rollers: FloatArray, loads: tuple[float, float], last: FloatArray
     return functions().speed_work(rollers.shape[0], rollers.ctypes.data, given.ctypes.data, last.ctypes.data)
 
 
-def dry_energy(laws: RollerLaws, shape: TaperedShape, rollers: FloatArray) -> float:
+def dry_energy(line: NormalLaw, shape: TaperedShape, rollers: FloatArray) -> float:
     """Energy of dry contacts [J], 9/19 Q times the approach of each slice, and 2/5 of ribs.
 
     Parameters
     ----------
-    laws, shape : RollerLaws, TaperedShape
-        Laws of the contacts, lengths of the bearing.
+    line, shape : NormalLaw, TaperedShape
+        Law of a dry line, lengths of the bearing.
     rollers : array (Z, COLUMNS)
         Numbers of the rollers, see `mbs.bearings.tapered.kernel_structs`.
     """
@@ -355,8 +352,8 @@ def dry_energy(laws: RollerLaws, shape: TaperedShape, rollers: FloatArray) -> fl
     count = shape.ribs.laws.size
     ribs = rollers[:, FIRST_RIB : FIRST_RIB + count]
     total = 0.4 * float(np.sum(ribs ** (5.0 / 3.0) * shape.ribs.laws ** (-2.0 / 3.0)))
-    for coefficient, normal, moved in ((laws.cup, shape.cup, place), (laws.cone, shape.cone, ring - place)):
+    for normal, moved in ((shape.cup, place), (shape.cone, ring - place)):
         approach = moved[:, :2] @ np.array(normal)
         depth = approach[:, None] + moved[:, 2:] * shape.levers - shape.profile
-        total += 9.0 / 19.0 * coefficient / shape.levers.size * float(np.sum(depth.clip(min=0.0) ** (19.0 / 9.0)))
+        total += 9.0 / 19.0 * line.coefficient / shape.levers.size * float(np.sum(depth.clip(min=0.0) ** (19.0 / 9.0)))
     return total

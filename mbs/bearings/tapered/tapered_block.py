@@ -25,8 +25,6 @@ class Tapered(PairBlock):
         What does not change of each.
     fastest : array (count,)
         Largest speed of the system [rad/s].
-    lines : array (count, 2)
-        C of dry cone and cup [N/m^(10/9)].
     loads : array (count, 2)
         Centrifugal load and gyroscopic moment over the square of the speed [N s2], [N m s2].
     rollers : array (count, longest, COLUMNS)
@@ -37,12 +35,12 @@ class Tapered(PairBlock):
 
     _fields_ = (
         ("bearings", ctypes.c_void_p),
-        *((name, numbers) for name in ("fastest", "lines", "loads", "rollers", "approaches")),
+        *((name, numbers) for name in ("fastest", "loads", "rollers", "approaches")),
     )
     shapes: ClassVar = {
         **PairBlock.shapes,
         "fastest": ("count",),
-        **dict.fromkeys(("lines", "loads"), ("count", 2)),
+        "loads": ("count", 2),
         "rollers": ("count", "longest", COLUMNS),
     }
 
@@ -61,14 +59,13 @@ class TaperedBlock(LocatingBlock):
     def own(self) -> dict[str, Any]:
         """See `LocatingBlock.own`."""
         elements = self.elements
-        own = [data_of(one.force.shape, one.force.laws) for one in elements]
+        own = [data_of(one.force.shape, one.force.dry_law.inner) for one in elements]
         self._kept = own, (TaperedData * len(own))(*own)
         spins = [(one.inner_spin, one.outer_spin, one.cage_turn) for one in elements]
         functions()  # which compares the structs
         return {
             "bearings": ctypes.addressof(self._kept[1]),
             "fastest": self.rows([FASTEST / max(*map(abs, each), 1e-12) for each in spins]),
-            "lines": self.rows([(one.force.laws.cone, one.force.laws.cup) for one in elements], 2),
             "loads": self.rows([one.force.speed_loads(*e[:2]) for one, e in zip(elements, spins, strict=True)], 2),
             "approaches": np.zeros(max((one.force.slices for one in elements), default=0)),
         }
@@ -76,7 +73,7 @@ class TaperedBlock(LocatingBlock):
     def stored(self, b: int) -> float:
         """See `LocatingBlock.stored`."""
         force = self.elements[b].force
-        return dry_energy(force.laws, force.shape, self.arrays["rollers"][b, : self.size(b)])
+        return dry_energy(force.dry_law.inner, force.shape, self.arrays["rollers"][b, : self.size(b)])
 
 
 TAPERED = Kind(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from ehdmaps.exports.c.text import define, number
 from mbs.bearings.balls.ball_bearing import BallForce
-from mbs.bearings.balls.response import SHORTER
 from mbs.exports.one_bearing.kind import ExportKind
 
 
@@ -53,8 +52,6 @@ BALLS = ExportKind(
     mirrored=lambda geometry: geometry.contact_angle < 0.0,
     public=_public,
     private=_private,
-    dry=lambda force: (force.law.inner, force.law.outer),
-    shorter=SHORTER,
     play=lambda geometry: geometry.clearance,
     motion=(
         "x is the axis of the bearing; the frame is that of the outer ring and does not spin. There is no moment about "

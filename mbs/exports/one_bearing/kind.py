@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from mbs.bearings.locating.normal_law import NormalLaw, PairLaw
+from mbs.bearings.locating.normal_law import PairLaw
 from mbs.exports.one_bearing.speed_laws import STEP, SpeedLaws, dry_speed_laws, film_speed_laws
 
 
@@ -26,22 +26,18 @@ class ExportKind:
         Begin of the names of its templates, `FILES_bearing` and `FILES_films`.
     kernel : tuple of str
         Files of the kernel beside the laws of contacts, `.h` and `.c`.
-    film_kernel : str
-        File of the kernel for films with memory.
     mirrored : callable
         (geometry) -> whether it carries along -x alone.
     public, private : callable
         (force) -> constants that callers may read, and those that only the functions read.
-    dry : callable
-        (force) -> dry laws of the inner and the outer contact.
-    shorter : tuple of float
-        Times of the springs of a film over the longest one.
     play : callable
         (geometry) -> play of the export, as `ehd_bearing_make` has it [m].
     motion : tuple of str
         Axes, signs and what is left out of a unit, for people.
     slow, memory : str
         What units without and with memory say.
+    film_kernel : tuple of str
+        Further files of the kernel for films with memory.
     own_words : mapping
         Words of variables that differ, by their names.
     play_name : str
@@ -62,8 +58,6 @@ class ExportKind:
     mirrored: Callable[[Any], bool]
     public: Callable[[Any], str]
     private: Callable[[Any], str]
-    dry: Callable[[Any], tuple[NormalLaw, NormalLaw]]
-    shorter: tuple[float, ...]
     play: Callable[[Any], float]
     motion: tuple[str, ...]
     slow: str
@@ -102,6 +96,6 @@ class ExportKind:
             If a speed has no films, or none over frequency for a memory.
         """
         if films is None:
-            return dry_speed_laws(*self.dry(force))
+            return dry_speed_laws(*force.dry_law.sides)
         dry = None if self.dry_approach is None else self.dry_approach(force)
-        return film_speed_laws(films, *ends, shorter=self.shorter if memory else (), dry=dry, step=self.step)
+        return film_speed_laws(films, *ends, shorter=force.shorter if memory else (), dry=dry, step=self.step)

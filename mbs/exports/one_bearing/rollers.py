@@ -10,8 +10,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.exports.c.text import array, define, number
-from mbs.bearings.locating.normal_law import NormalLaw
-from mbs.bearings.tapered.kernel_structs import RIB_NUMBERS, RollerLaws, rib_rows
+from mbs.bearings.tapered.kernel_structs import RIB_NUMBERS, rib_rows
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.exports.one_bearing.kind import ExportKind
 
@@ -20,16 +19,9 @@ _KERNEL = (
 )  # fmt: skip
 
 
-def _dry(force: TaperedForce) -> tuple[NormalLaw, NormalLaw]:
-    """Dry laws of both lines."""
-    laws = force.laws
-    inner, outer = (NormalLaw(c, laws.damping, laws.damping_time) for c in (laws.cone, laws.cup))
-    return inner, outer
-
-
 def _dry_approach(force: TaperedForce) -> Callable[[float], float]:
     """Approach of a dry line by its load."""
-    return lambda load: float((load / force.laws.cone) ** 0.9)
+    return lambda load: float((load / force.dry_law.inner.coefficient) ** 0.9)
 
 
 def _public(force: TaperedForce, play: float = 0.0) -> str:
@@ -55,7 +47,7 @@ def _public(force: TaperedForce, play: float = 0.0) -> str:
 
 def _private(force: TaperedForce) -> str:
     """Constants that only the functions read."""
-    geometry, dry = force.geometry, force.laws
+    geometry = force.geometry
     along, across = geometry.roller_inertia(force.material)
     return "\n".join(
         [
@@ -64,19 +56,20 @@ def _private(force: TaperedForce) -> str:
             + define("ROLLER_SPEED", geometry.roller_speed(1.0), "about its axis against the cage, by the rings'"),
             _row("INERTIA", (along, across), "along and across a roller [kg m2]")
             + _row("AXIS", (math.cos(geometry.axis_angle), math.sin(geometry.axis_angle)), "of a roller"),
-            _data(force, dry),
+            _data(force),
         ]
     )
 
 
-def _data(force: TaperedForce, dry: RollerLaws) -> str:
+def _data(force: TaperedForce) -> str:
     """The bearing as the kernel reads it, but for what `ehd_bearing_make` writes."""
-    shape = force.shape
+    shape, line = force.shape, force.dry_law.inner
     ribs = rib_rows(shape.ribs) if force.ribs else np.zeros((1, RIB_NUMBERS))
     pairs = "}, {".join(", ".join(map(number, pair)) for pair in (shape.cup, shape.cone))
     play = force.geometry.raceway_play
     sizes = f"EHD_ROLLERS, EHD_SLICES, EHD_RIBS, {number(shape.pitch_radius)}"
-    numbers = map(number, (play, shape.most_travel, shape.most_tilt, dry.cup + dry.cone, dry.damping, dry.damping_time))
+    dampers = line.damping, line.damping_time
+    numbers = map(number, (play, shape.most_travel, shape.most_tilt, 2.0 * line.coefficient, *dampers))
     return (
         _row("LEVER", shape.levers, "of the normals in slices [m]")
         + _row("PROFILE", shape.profile - play, "depth of slices at either raceway [m]")
@@ -103,8 +96,6 @@ TAPERED = ExportKind(
     mirrored=lambda geometry: geometry.contact_angle < 0.0,
     public=_public,
     private=_private,
-    dry=_dry,
-    shorter=(1.0,),
     play=lambda geometry: 0.0,
     motion=(
         "x is the axis of the bearing; the frame is that of the outer ring, in the plane of the middles of the "

@@ -16,7 +16,6 @@ typedef struct ehd_taper_block {
     ehd_pair_block all;
     const ehd_taper_data *bearings; /* (count,) */
     const double *fastest;          /* (count,): largest speed of the system [rad/s] */
-    const double *lines;            /* (count, 2): C of dry cone and cup [N/m^(10/9)] */
     const double *loads;            /* (count, 2): F over the square of the speed [N s2], [N m s2] */
     ehd_taper_roller *rollers;      /* (count, longest): of the last answer */
     double *approaches;             /* (slices of a roller at most,): work space [m] */
@@ -38,17 +37,6 @@ double ehd_taper_speed_work(int64_t count, const ehd_taper_roller *rollers, cons
     return work;
 }
 
-/* Laws of cone and cup at the speed of the step. */
-static void taper_laws_of(const ehd_taper_block *of, int64_t b, ehd_pair_law law[2]) {
-    for (int side = 0; side < 2; side++) {
-        law[side] = pair_law_of(of->all.films, of->all.films_of[b], side);
-        if (law[side].rows > 0) continue;
-        law[side].coefficient = of->lines[2 * b + side];
-        law[side].damping = of->bearings[b].damping;
-        law[side].damping_time = of->bearings[b].damping_time;
-    }
-}
-
 /* Write the answer of a bearing; what ehd_taper_force returns. */
 static int taper_on_port(const ehd_taper_block *of, int64_t b, const ehd_moment *at, const double *motion,
                          ehd_answers *answers) {
@@ -56,11 +44,11 @@ static int taper_on_port(const ehd_taper_block *of, int64_t b, const ehd_moment 
     const double square = at->speed * at->speed, angle = of->all.starts[b] + of->all.turns[b] * at->angle;
     const double loads[3] = {0.0, of->loads[2 * b] * square, of->loads[2 * b + 1] * square};
     double pose[6];
-    ehd_pair_law law[2];
+    const ehd_pair_law law[2] = {pair_law_of(of->all.films, of->all.films_of[b], 0),
+                                 pair_law_of(of->all.films, of->all.films_of[b], 1)};
     ehd_taper_answer own;
     if (!(fabs(at->speed) <= of->fastest[b])) return EHD_TAPER_TOO_FAR;
     pair_read_pose(first, of->all.offsets[b], motion, pose);
-    taper_laws_of(of, b, law);
     const int found = ehd_taper_force(of->bearings + b, law, pose, angle, loads, pair_memory_of(&of->all, b),
                                       of->rollers + b * of->all.longest, &own);
     if (found >= 0)
@@ -98,9 +86,9 @@ void ehd_taper_block_accept(void *data, const ehd_moment *at) {
         of->all.works[b] = step > 0.0 ? work / step : 0.0;
         if (of->all.memories[b] >= 0) {
             const ehd_pair_springs springs = pair_springs_of(of->all.films, of->all.films_of[b]);
-            ehd_pair_law law[2];
-            taper_laws_of(of, b, law);
-            ehd_taper_go_on(bearing, law, &springs, rollers, of->approaches, pair_memory_of(&of->all, b));
+            const ehd_pair_law law[2] = {pair_law_of(of->all.films, of->all.films_of[b], 0),
+                                         pair_law_of(of->all.films, of->all.films_of[b], 1)};
+                    ehd_taper_go_on(bearing, law, &springs, rollers, of->approaches, pair_memory_of(&of->all, b));
         }
     }
     pair_made(&of->all, at);
