@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from ehdmaps.arrays import IntArray
 from ehdmaps.physics.solids import Material
 from examples.housings.mesh import Mesh
+from mbs.flexible.solid_mesh import SolidMesh, solid_lines
 
 _PER_LINE = 12
 """CalculiX takes up to 16 entries a line."""
@@ -39,20 +40,11 @@ def deck(mesh: Mesh, material: Material, clamped: IntArray, count: int, matrices
 
 def _lines(mesh: Mesh, material: Material, clamped: IntArray, count: int, matrices: bool) -> Iterator[str]:
     """The deck, line by line."""
-    yield "*NODE, NSET=ALL"
-    # CalculiX reads no more than 20 characters a number.
-    for number, (x, y, z) in enumerate(mesh.positions.tolist(), start=1):
-        yield f"{number},{x:.12e},{y:.12e},{z:.12e}"
-    yield "*ELEMENT, TYPE=C3D10, ELSET=SOLID"
-    for number, nodes in enumerate((mesh.elements + 1).tolist(), start=1):
-        yield ",".join(map(str, [number, *nodes]))
+    yield from solid_lines(SolidMesh(mesh.positions, {"tetra10": mesh.elements}, {}), material)
     if clamped.size:
         yield "*NSET, NSET=CLAMPED"
         numbers = (clamped + 1).tolist()
         for first in range(0, len(numbers), _PER_LINE):
             yield ",".join(map(str, numbers[first : first + _PER_LINE]))
         yield from ("*BOUNDARY", "CLAMPED,1,3")
-    yield from ("*MATERIAL, NAME=MATERIAL", "*ELASTIC", f"{material.youngs_modulus:.12e},{material.poisson_ratio:.12e}")
-    yield from ("*DENSITY", f"{material.density:.12e}")
-    yield "*SOLID SECTION, ELSET=SOLID, MATERIAL=MATERIAL"
     yield from ("*STEP", "*FREQUENCY, SOLVER=MATRIXSTORAGE" if matrices else "*FREQUENCY", str(count), "*END STEP")

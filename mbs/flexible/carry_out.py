@@ -127,7 +127,7 @@ def reduce_model(
 
 def _interface(planned: PlannedInterface, model: FiniteElementModel, name: str) -> Interface:
     """The interface on a model; InputError if no node is there."""
-    nodes = _nodes(planned, model)
+    nodes = interface_nodes(planned, model)
     if nodes.size == 0:
         raise InputError(
             f"interface {name!r}: no node of the mesh is on its surface; allowed: a surface of the mesh; check at, "
@@ -137,8 +137,16 @@ def _interface(planned: PlannedInterface, model: FiniteElementModel, name: str) 
     return Interface(np.array(planned.position), nodes, planned.kind, planned.freedoms)
 
 
-def _nodes(planned: PlannedInterface, model: FiniteElementModel) -> IntArray:
-    """Nodes of the surface of an interface."""
+def interface_nodes(planned: PlannedInterface, model: FiniteElementModel) -> IntArray:
+    """Numbers of the nodes on the surface of an interface.
+
+    Parameters
+    ----------
+    planned : PlannedInterface
+        The interface.
+    model : FiniteElementModel
+        The body.
+    """
     place, surface = planned.position, planned.surface
     if isinstance(surface, NodeList):
         return np.array(surface.numbers, dtype=np.int64)

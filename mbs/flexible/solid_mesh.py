@@ -1,0 +1,310 @@
+"""A solid mesh as a body: read by meshio, assembled by CalculiX, ready for a reduction.
+
+=====================  ==========================  ========================================
+mesh                   groups of nodes             material
+=====================  ==========================  ========================================
+.msh of Gmsh           physical groups             stated
+.inp of Abaqus         *NSET, *ELSET               *MATERIAL with *ELASTIC and *DENSITY
+.bdf .nas .fem         none                        MAT1
+.med of Salome         groups                      stated
+=====================  ==========================  ========================================
+
+Elements are tetrahedra, wedges and hexahedra of first or second order; shells and beams of the same file, which mesh
+programs write along with solids, are left out, and said. All elements are of one material. CalculiX assembles stiffness
+and mass once, in SI, in a folder that is removed.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.errors import InputError, Problems
+from ehdmaps.inputs import read_text
+from ehdmaps.physics.solids import STEEL, Material
+from ehdmaps.solids.calculix import run_deck
+from mbs.flexible.apart import run_apart
+from mbs.flexible.finite_elements import MOST_FREEDOMS
+from mbs.flexible.number_table import LONGEST_FILE, check_file
+
+MESHES = (".msh", ".inp", ".bdf", ".nas", ".fem", ".med")
+"""Endings of solid meshes."""
+
+MATERIALS: Mapping[str, Material] = {
+    "steel": STEEL,
+    "cast iron": Material(110e9, 0.25, 7200.0),
+    "ductile iron": Material(170e9, 0.275, 7100.0),
+    "aluminium": Material(70e9, 0.33, 2700.0),
+}
+"""Materials by name, with usual values."""
+
+UNITS: Mapping[str, float] = {"m": 1.0, "mm": 1e-3}
+"""Units of lengths of a mesh [m]."""
+
+JOB = "body"
+"""Name of the files of CalculiX."""
+
+_ELEMENTS = {
+    "tetra": "C3D4",
+    "tetra10": "C3D10",
+    "wedge": "C3D6",
+    "wedge15": "C3D15",
+    "hexahedron": "C3D8",
+    "hexahedron20": "C3D20",
+}
+"""Elements of CalculiX by those of meshio, whose nodes are in the same order."""
+
+_PER_LINE = 12
+"""Entries of a line of a deck; CalculiX takes up to 16."""
+
+_READ = """
+import meshio, numpy
+mesh = meshio.read(sys.argv[1])
+points = numpy.asarray(mesh.points, dtype=float)
+found, groups, others = {}, {}, set()
+kinds = KINDS
+for block in mesh.cells:
+    if block.type in kinds:
+        found.setdefault(block.type, []).append(block.data)
+    else:
+        others.add(block.type)
+def add(name, nodes):
+    groups[str(name)] = numpy.unique(numpy.concatenate([groups.get(str(name), numpy.zeros(0, int)), nodes]))
+for name, nodes in mesh.point_sets.items():
+    add(name, numpy.asarray(nodes, int).ravel())
+names = {(tag, dim): name for name, (tag, dim) in mesh.field_data.items()}
+tags = mesh.cell_data.get("gmsh:physical")
+dims = {"vertex": 0, "line": 1, "line3": 1, "triangle": 2, "triangle6": 2, "quad": 2, "quad8": 2, "quad9": 2}
+for k, block in enumerate(mesh.cells):
+    if tags is not None:
+        for tag in numpy.unique(tags[k]):
+            name = names.get((int(tag), dims.get(block.type, 3)))
+            if name is not None:
+                add(name, block.data[tags[k] == tag].ravel())
+for name, parts in mesh.cell_sets.items():
+    for block, cells in zip(mesh.cells, parts):
+        if cells is not None and len(cells):
+            add(name, block.data[numpy.asarray(cells, int)].ravel())
+if "point_tags" in mesh.point_data:
+    for tag, named in getattr(mesh, "point_tags", {}).items():
+        for name in named:
+            add(name, numpy.flatnonzero(mesh.point_data["point_tags"] == tag))
+data = {"cells " + kind: numpy.concatenate(blocks) for kind, blocks in found.items()}
+data.update({"group " + name: nodes for name, nodes in groups.items()})
+numpy.savez(output, points=points, others=numpy.array(sorted(others), dtype=str), **data)
+""".replace("KINDS", repr(tuple(_ELEMENTS)))
+
+
+@dataclass(frozen=True, eq=False)
+class SolidMesh:
+    """Nodes and solid elements.
+
+    Attributes
+    ----------
+    positions : array, shape (nodes, 3)
+        [m]; node n of CalculiX is row n - 1. Every node is used.
+    elements : mapping of str to array of int, shape (elements, corners)
+        Indices into `positions` by the kind of meshio.
+    groups : mapping of str to array of int
+        Numbers of nodes, from 1, by the name of a group.
+    left_out : tuple of str
+        Kinds of elements that are no solids.
+    """
+
+    positions: FloatArray
+    elements: Mapping[str, IntArray]
+    groups: Mapping[str, IntArray]
+    left_out: tuple[str, ...] = ()
+
+    @property
+    def count(self) -> int:
+        """Number of elements."""
+        return sum(len(cells) for cells in self.elements.values())
+
+
+def read_solid(path: Path, unit: float) -> SolidMesh:
+    """Read a solid mesh.
+
+    Parameters
+    ----------
+    path : Path
+        A mesh of a format at the head of this module.
+    unit : float
+        Unit of its lengths [m].
+
+    Raises
+    ------
+    InputError
+        For what is no such mesh, or has more freedoms than are reduced.
+    DependencyError
+        If meshio is not installed.
+    """
+    check_file(path)
+    content, words = run_apart(_READ, [str(path.absolute())], path.stat().st_size, "flexible", "meshio", str(path))
+    try:
+        with np.load(BytesIO(content), allow_pickle=False) as archive:
+            found = {name: archive[name] for name in archive.files}
+    except (OSError, ValueError, EOFError, KeyError) as error:
+        raise InputError(
+            f"{path}: cannot be read as a mesh ({words:.120}); allowed: {', '.join(MESHES)}; was it cut off?"
+        ) from error
+    cells = {name.removeprefix("cells "): found[name] for name in found if name.startswith("cells ")}
+    others = tuple(str(name) for name in found["others"])
+    if not cells:
+        raise InputError(
+            f"{path}: has no solid elements (got {', '.join(others) or 'none'}); allowed: {', '.join(_ELEMENTS)}"
+        )
+    points = np.asarray(found["points"], dtype=np.float64)
+    if points.ndim != 2 or points.shape[1] != 3 or not np.all(np.isfinite(points)):
+        raise InputError(f"{path}: got points of shape {points.shape}; allowed: three finite coordinates a node")
+    used = np.unique(np.concatenate([block.ravel() for block in cells.values()]))
+    if 3 * used.size > MOST_FREEDOMS:
+        raise InputError(
+            f"{path}: got {3 * used.size} degrees of freedom; allowed: at most {MOST_FREEDOMS}; take a coarser mesh"
+        )
+    place = np.full(len(points), -1)
+    place[used] = np.arange(used.size)
+    groups = {}
+    for name in found:
+        if name.startswith("group "):
+            own = place[found[name]]
+            groups[name.removeprefix("group ")] = np.asarray(own[own >= 0] + 1, dtype=np.int64)
+    elements = {kind: np.asarray(place[block], dtype=np.int64) for kind, block in cells.items()}
+    return SolidMesh(unit * points[used], elements, groups, others)
+
+
+def materials_of(path: Path) -> list[Material]:
+    """Read the materials that a deck of Abaqus or Nastran states, in its own units; none of other meshes.
+
+    Parameters
+    ----------
+    path : Path
+        The mesh.
+
+    Raises
+    ------
+    InputError
+        For numbers that are none.
+    """
+    ending = path.suffix.lower()
+    if ending not in (".inp", ".bdf", ".nas", ".fem"):
+        return []
+    lines = read_text(path, LONGEST_FILE, "a mesh").splitlines()
+    rows = _abaqus(lines) if ending == ".inp" else _nastran(lines)
+    problems = Problems()
+    found = []
+    for modulus, ratio, density in rows:
+        with problems:
+            found.append(Material(modulus, ratio, density))
+    if problems:
+        raise InputError([f"{path}: material: {problem}" for problem in problems])
+    return list(dict.fromkeys(found))
+
+
+def _abaqus(lines: list[str]) -> Iterator[tuple[float, float, float]]:
+    """Modulus, ratio and density of each *MATERIAL."""
+    values: dict[str, list[float]] = {}
+
+    def done() -> Iterator[tuple[float, float, float]]:
+        if "ELASTIC" in values:
+            modulus, ratio = (values["ELASTIC"] + [0.3, 0.3])[:2]
+            yield modulus, ratio, values.get("DENSITY", [0.0])[0]
+
+    for k, line in enumerate(lines):
+        keyword = line.strip().upper().split(",")[0]
+        if keyword == "*MATERIAL":
+            yield from done()
+            values = {}
+        elif keyword in ("*ELASTIC", "*DENSITY") and k + 1 < len(lines):
+            values[keyword[1:]] = [_number(text) for text in lines[k + 1].split(",") if text.strip()]
+    yield from done()
+
+
+def _nastran(lines: list[str]) -> Iterator[tuple[float, float, float]]:
+    """Modulus, ratio and density of each MAT1."""
+    for k, line in enumerate(lines):
+        if not line.upper().startswith("MAT1"):
+            continue
+        if "," in line:
+            fields = [text.strip() for text in line.split(",")]
+        elif line.upper().startswith("MAT1*"):
+            both = line[:72].ljust(72) + (lines[k + 1][8:72] if k + 1 < len(lines) else "")
+            fields = ["MAT1", *(both[at : at + 16].strip() for at in range(8, len(both), 16))]
+        else:
+            fields = ["MAT1", *(line[at : at + 8].strip() for at in range(8, len(line), 8))]
+        fields += [""] * (6 - len(fields))
+        modulus, shear, ratio = (_number(text) if text else 0.0 for text in fields[2:5])
+        if not ratio and modulus and shear:
+            ratio = 0.5 * modulus / shear - 1.0
+        yield modulus or 2.0 * shear * (1.0 + ratio), ratio, _number(fields[5]) if fields[5] else 0.0
+
+
+def _number(text: str) -> float:
+    """A number of a deck, which may leave out the letter of its power of ten; NaN where it is none."""
+    try:
+        return float(re.sub(r"(?<=[0-9.])([+-][0-9]+)$", r"e\1", text.strip().replace("D", "E").replace("d", "e")))
+    except ValueError:
+        return float("nan")
+
+
+def assembled(mesh: SolidMesh, material: Material, folder: Path) -> tuple[Path, Path, Path, Path]:
+    """Have CalculiX assemble stiffness and mass of a free body, in SI.
+
+    Parameters
+    ----------
+    mesh : SolidMesh
+        The mesh.
+    material : Material
+        Material of all elements.
+    folder : Path
+        An empty folder for its files.
+
+    Returns
+    -------
+    stiffness, mass, dofs, deck : Path
+        Files that `mbs.flexible.plan.ReductionPlan` names.
+
+    Raises
+    ------
+    InputError
+        If CalculiX is missing.
+    AnalysisError
+        If it fails.
+    """
+    step = ("*STEP", "*FREQUENCY, SOLVER=MATRIXSTORAGE", "1", "*END STEP")
+    run_deck("\n".join((*solid_lines(mesh, material), *step)) + "\n", folder, JOB, "assembling a mesh")
+    stiffness, mass, dofs, deck = (folder / f"{JOB}.{ending}" for ending in ("sti", "mas", "dof", "inp"))
+    return stiffness, mass, dofs, deck
+
+
+def solid_lines(mesh: SolidMesh, material: Material) -> Iterator[str]:
+    """Lines of a deck of CalculiX up to its steps: nodes, elements, material.
+
+    Parameters
+    ----------
+    mesh : SolidMesh
+        The mesh.
+    material : Material
+        Material of all elements.
+    """
+    yield "*NODE, NSET=ALL"
+    # CalculiX reads no more than 20 characters a number.
+    for number, (x, y, z) in enumerate(mesh.positions.tolist(), start=1):
+        yield f"{number},{x:.12e},{y:.12e},{z:.12e}"
+    number = 0
+    for kind, cells in mesh.elements.items():
+        yield f"*ELEMENT, TYPE={_ELEMENTS[kind]}, ELSET=SOLID"
+        for nodes in (cells + 1).tolist():
+            number += 1
+            words = [str(number), *map(str, nodes)]
+            parts = [",".join(words[at : at + _PER_LINE]) for at in range(0, len(words), _PER_LINE)]
+            yield ",\n".join(parts)
+    yield from ("*MATERIAL, NAME=MATERIAL", "*ELASTIC", f"{material.youngs_modulus:.12e},{material.poisson_ratio:.12e}")
+    yield from ("*DENSITY", f"{material.density:.12e}")
+    yield "*SOLID SECTION, ELSET=SOLID, MATERIAL=MATERIAL"
