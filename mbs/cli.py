@@ -15,9 +15,9 @@ from mbs.scene.choices import OPTIONS, VARIED
 
 _ROOMS = {
     **dict.fromkeys(("stability", "tradeoff", "variants"), "mbs.laboratory.commands"),
-    **dict.fromkeys(("check", "importing", "new"), "mbs.commands.scenes"),
+    **dict.fromkeys(("check", "importing", "new", "reduce"), "mbs.commands.scenes"),
 }
-"""Packages of commands that measure the program, and of those on scene files; of the others `mbs.commands`."""
+"""Packages of commands that measure the program, and of those on scenes and bodies; of the others `mbs.commands`."""
 
 
 @cache

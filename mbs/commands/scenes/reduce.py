@@ -13,7 +13,7 @@ from ehdmaps.outputs import Output, output_problems
 from ehdmaps.units import LENGTH
 from ehdmaps.version import version
 from mbs.commands.common import out_of_place
-from mbs.commands.reduce_mesh import reduced_mesh
+from mbs.commands.scenes.reduce_mesh import reduced_mesh
 from mbs.flexible.carry_out import read_model, reduce_model
 from mbs.flexible.finite_elements import Extent, FiniteElementModel, extent
 from mbs.flexible.plan import ReductionPlan
