@@ -107,7 +107,7 @@ class RingElement(OnRings):
     def advance(
         self, states: FilmStates | None, displacement: FloatArray, velocity: FloatArray, operation: Operation
     ) -> tuple[Forces, FilmStates | None]:
-        """See `Element.advance`: a step of films with memory as `ContactLaw.advance` for all slices, by no rates."""
+        """A step of films with memory, by no rates, as `ContactLaw.advance` for all slices; see `Element.advance`."""
         if not self.relaxes:
             return super().advance(states, displacement, velocity, operation)
         before = None if states is None else states.films
@@ -123,7 +123,7 @@ class RingElement(OnRings):
         velocity: FloatArray,
         operation: Operation,
     ) -> Powers | None:
-        """See `Element.powers`: what contacts or films with memory take up, and what cage and rollers bring in."""
+        """Power that contacts, or films with memory, take up, and that cage and rollers bring in, see `Element.powers`."""
         if not self.flat_laws:
             return None
         if states is None:
@@ -138,7 +138,7 @@ class RingElement(OnRings):
         return Powers(0.0, self.brought_in(force, displacement, velocity, operation), spent * length)
 
     def stored(self, states: FilmStates | None, displacement: FloatArray, operation: Operation) -> float | None:
-        """See `Element.stored`: energy of its contacts at rest, or of the solids and of films that follow."""
+        """Energy of its contacts at rest [J], or of the solids and of films that follow, see `Element.stored`."""
         if states is None:
             return self.stored_at_rest(displacement, operation)
         memories, length = self.in_time(operation)
