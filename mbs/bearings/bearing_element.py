@@ -123,7 +123,7 @@ class RingElement(OnRings):
         velocity: FloatArray,
         operation: Operation,
     ) -> Powers | None:
-        """Power that contacts or films with memory take up, and what cage and rollers bring in; see `Element.powers`."""
+        """Power that contacts or films with memory take up, what cage and rollers bring in; see `Element.powers`."""
         if not self.flat_laws:
             return None
         if states is None:
