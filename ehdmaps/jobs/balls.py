@@ -17,7 +17,7 @@ from ehdmaps.jobs.table import Table, inline
 from ehdmaps.physics.designations.estimates import without_parts
 from ehdmaps.physics.designations.reader import BALLS, plain_name
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
-from ehdmaps.physics.point.ball_geometry import LARGEST_ANGLE, MOST_BALLS, BallGeometry
+from ehdmaps.physics.point.ball_geometry import HYPOTHESES, LARGEST_ANGLE, MOST_BALLS, BallGeometry
 from ehdmaps.physics.solids import SILICON_NITRIDE, STEEL, Material
 from ehdmaps.units import LENGTH, Display
 
@@ -25,7 +25,10 @@ MATERIALS = {"steel": STEEL, "silicon nitride": SILICON_NITRIDE}
 """Materials of balls and rings by name."""
 
 _OWN = ("balls", "ball_diameter", "pitch_diameter", "inner_groove_radius", "outer_groove_radius")
-_KEYS = ("name", *_OWN, "contact_angle", "diametral_clearance", "preload", "ball_material", "ring_material")
+_KEYS = (
+    *("name", *_OWN, "contact_angle", "diametral_clearance", "preload"),
+    *("ball_material", "ring_material", "hypothesis"),
+)
 _LONGEST = 100_000
 _WIDEST = 1e-2
 
@@ -118,6 +121,7 @@ def read_balls(section: Table) -> BallGeometry | None:
         "contact_angle": section.quantity("contact_angle", "rad", -LARGEST_ANGLE, LARGEST_ANGLE, _DEGREE),
         "ball_material": _material(section, "ball_material"),
         "ring_material": _material(section, "ring_material"),
+        "hypothesis": section.choice("hypothesis", HYPOTHESES) if "hypothesis" in section else None,
     }
     clearance = section.quantity("diametral_clearance", "m", -_WIDEST, _WIDEST, _MICROMETRE)
     preload = section.quantity("preload", "N", 0.0, 1e9, Display("N"))

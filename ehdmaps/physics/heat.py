@@ -280,6 +280,24 @@ def heat_data(lubricant: Lubricant, material: Material) -> HeatData:
     )
 
 
+def heat_in_force(asked: bool | None, lubricant: Lubricant | None) -> bool:
+    """Tell whether heat in the inlet thins films of the film table.
+
+    Parameters
+    ----------
+    asked : bool or None
+        What was asked for; None for the default, which is on: its absence is a known error, and it costs a tenth.
+    lubricant : Lubricant or None
+        The oil; by default films of one whose conductivity nobody stated are isothermal, and say so.
+
+    Examples
+    --------
+    >>> heat_in_force(None, Lubricant.named("FVA3")), heat_in_force(None, None)
+    (True, False)
+    """
+    return (lubricant is not None and lubricant.thermal_conductivity is not None) if asked is None else asked
+
+
 HEATING, BY_LOADING, BY_LOAD, LIGHTEST = 0.215, 0.73, 0.064, 0.23
 """Numbers of the factor; at M of the last one the heating is half of that of a loaded contact. Fitted to 82 lines
 with temperatures of two oils, M 0.3 to 60, QL 0.15 to 3, L 10 to 20: films within 5.1 %, rms 1.5 %. 41 of a third oil,

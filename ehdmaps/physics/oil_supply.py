@@ -155,11 +155,15 @@ class FilmConditions:
         return self.supply.flooded and self.surface.smooth
 
     @property
+    def heat_words(self) -> str:
+        """Heat that films know of, for people."""
+        return "inlet heat" if self.inlet_heat else "isothermal"
+
+    @property
     def words(self) -> str:
         """The conditions for people; smooth surfaces are not told."""
-        heat = "inlet heat" if self.inlet_heat else "isothermal"
         rough = "" if self.surface.smooth else f", {self.surface.label}"
-        return f"{heat}, {self.supply.label}{rough}"
+        return f"{self.heat_words}, {self.supply.label}{rough}"
 
 
 PLAIN = FilmConditions()

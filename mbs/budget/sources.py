@@ -14,6 +14,7 @@ import numpy as np
 
 from ehdmaps.choices import supply_from_text
 from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.physics.heat import ISOTHERMAL
 from ehdmaps.physics.surface import Surface
 from ehdmaps.trade.record import Choice, Entry, ErrorSummary, Group, Judged, Source, Trade
 from ehdmaps.units import RPM
@@ -29,7 +30,7 @@ from mbs.scene.map_set import TABLE_LAW
 from mbs.scene.scene import Scene
 from mbs.scene.subject import LawChoice, Subject, named_law
 from mbs.settings import CAGE_ANGLES
-from mbs.unknowns.held_open import SUPPLIES, clearance_of, held_open
+from mbs.unknowns.held_open import SUPPLIES, clearance_of, held_open, hypotheses
 from mbs.unknowns.unknown import Unknown
 
 FREQUENCY, DAMPING, HEIGHT, LOAD = "frequency", "damping ratio", "response peak", "contact load"
@@ -213,11 +214,16 @@ def _others(base: Subject, model: Model) -> Iterator[Tried]:
         structure = base.law.maps.maps[0].structural_law
         other = "iso16281" if structure == "half_space" else "half_space"
         stated.append(("structural-law", other, f"structural law {other} in place of {structure}"))
+    films, maps = base.law.may_relax, () if base.law.maps is None else base.law.maps.maps
+    if films and base.law.inlet_heat is not False and (base.law.name == TABLE_LAW or any(m.inlet_heat for m in maps)):
+        stated.append(("physics", ISOTHERMAL, "films without heat in the inlet"))
     if model.surface is not None and model.surface.smooth:
         stated.append(("roughness", ROUGH, ROUGH.label))
     for key, value, label in stated:
         with contextlib.suppress(InputError):
             yield Entry(group, label, CHOICES[key].change(base, value))
+    for one in hypotheses(base.scene):
+        yield Entry(group, f"axis of balls: {one.name}", dataclasses.replace(base, scene=one.looks[0]))
     if model.surface is not None and not model.surface.smooth and model.surface.corners[0] != model.surface:
         soft = dataclasses.replace(base.scene, surface=model.surface.corners[0])
         yield Entry(group, "softest usual asperities", dataclasses.replace(base, scene=soft))
@@ -243,8 +249,6 @@ def _laws(base: Subject) -> Iterator[Tried]:
 
 def _supplies(base: Subject) -> Iterator[Tried]:
     """Oil supplies, by the reference law."""
-    if base.scene.has_points:  # whose films are flooded
-        return
     given, group = set(base.model().supplies.values()), Group("oil supply", base)
     for text in ("flooded", *SUPPLIES):
         supply = supply_from_text(text)

@@ -56,7 +56,9 @@ def analysed(
     problems.check()
     if not auto:
         found = judged(arguments, looks_at(asked)) if hasattr(arguments, "auto") else ()
-        return Done(analyse(asked), tuple(f"note: {one.line}" for one in found if one.matters and not one.on))
+        return Done(
+            analyse(asked), tuple(f"note: {one.line}" for one in found if one.matters and (one.fails or not one.on))
+        )
     from mbs.planning.physics import switched, verdicts
 
     looked = looks_at(asked)
@@ -91,7 +93,7 @@ def judged(arguments: argparse.Namespace, looked: Looked) -> tuple[Verdict, ...]
 
 def _in_force(arguments: argparse.Namespace) -> dict[str, str]:
     """Films and physics that a command has, chosen or by default."""
-    usual = {"films": DEFAULT_FILMS, "physics": "isothermal"}
+    usual = {"films": DEFAULT_FILMS, "physics": "inlet-heat"}
     return {name: next(iter(texts_of(arguments, CHOICES[name])), value) for name, value in usual.items()}
 
 

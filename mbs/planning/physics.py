@@ -3,7 +3,7 @@
 The criteria are those of `mbs.planning.criteria`, each taken at its worst over both contacts of all bearings, over the
 speeds of the scene, and over the loads of the rollers that carry it, `SHARES` of the highest load at rest. Rollers that
 carry less take less than that part in stiffness. The oil supply is looked at down to idle rollers, whose films are the
-thick ones. Of balls, whose films are smooth, flooded, isothermal and Newtonian, nothing is weighed.
+thick ones. Of balls nothing is weighed: their films are Newtonian, with what is asked for of heat, supply, roughness.
 """
 
 from __future__ import annotations
@@ -117,6 +117,8 @@ class Verdict:
         The same for people, and where.
     matters : bool
         Whether that is more than the tolerance.
+    fails : bool
+        Whether the rule by which films have it does not hold somewhere.
     """
 
     physics: str
@@ -124,6 +126,7 @@ class Verdict:
     size: float
     words: str
     matters: bool
+    fails: bool = False
 
     @property
     def line(self) -> str:
@@ -274,19 +277,19 @@ def _heat(states: Sequence[ClosedContact], oil: Lubricant, asked: str | None, to
     """Judge heat in the inlet, which films of the table have by its rule."""
     name = "inlet heat"
     if oil.thermal_conductivity is None:
-        words = f"unknown: no thermal conductivity of {oil.title} is known"
+        words = f"unknown: no thermal conductivity of {oil.title} is known; films are isothermal"
         return Verdict(name, asked == INLET_HEAT, math.nan, words, False)
     size, state = _worst(states, lambda entry: np.maximum(*heat_effect(entry, oil)))
     matters = size > tolerance
     refused = next(filter(None, (heat_refused(one, oil) for one in states)), "") if matters else ""
-    on = asked == INLET_HEAT if asked else matters and not refused
+    on = asked != ISOTHERMAL
     words = f"it changes k or c of a contact by {up_to(size)} at {SPEED.text(state.speed)}"
     if refused:
-        words += f"; its rule fails where {refused}; --physics {INLET_HEAT} has it elsewhere; "
+        words += f"; its rule fails where {refused}: the errors of the films say so; "
         words += MAKE_A_MAP.format(key='physics = "thermal"')
-    elif matters and not on:
+    if matters and not on:
         words += f"; --physics {INLET_HEAT} has it"
-    return Verdict(name, on, size, words, matters)
+    return Verdict(name, on, size, words, matters, fails=bool(refused))
 
 
 def _stress(states: Sequence[ClosedContact]) -> Verdict:

@@ -17,6 +17,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, Problems
+from ehdmaps.physics.heat import heat_in_force
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import Surface
@@ -212,14 +213,14 @@ class Recipe:
         The maps that were given, or read from the film table.
     films : {"slow", "memory"} or None
         Which films were asked for.
-    inlet_heat : bool
-        Whether heat in the inlet was asked for.
+    inlet_heat : bool or None
+        Whether heat in the inlet was asked for; None for the default.
     """
 
     law: str | None = None
     maps: MapSet | None = None
     films: Films | None = None
-    inlet_heat: bool = False
+    inlet_heat: bool | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -360,7 +361,7 @@ def assemble(
     clearance: float | None = None,
     films: Films | None = None,
     supply: OilSupply | None = None,
-    inlet_heat: bool = False,
+    inlet_heat: bool | None = None,
 ) -> Model:
     """Make a system from a scene.
 
@@ -382,8 +383,9 @@ def assemble(
     supply : OilSupply, optional
         Oil supply of all bearings, in place of that of the scene and of its bearings; without either it is that which
         the job of the map states, and flooded where it states none. Laws without films have none.
-    inlet_heat : bool
-        Whether heat in the inlet thins films of the film table, by its rule (`ehdmaps.physics.heat`).
+    inlet_heat : bool, optional
+        Whether heat in the inlet thins films of the film table, by its rule (`ehdmaps.physics.heat`); if left out yes,
+        where the conductivity of the oil is known. Maps from files have the physics that they were made with.
 
     Returns
     -------
@@ -419,7 +421,7 @@ def assemble(
             problems += [f"--clearance: {problem}" for problem in error.problems]
     if supply is not None:
         scene = with_supply(scene, supply)
-    laws = ContactLaws(chosen, scene, maps, films, inlet_heat)
+    laws = ContactLaws(chosen, scene, maps, films, heat_in_force(inlet_heat, scene.lubricant))
     wrong_law = laws.problems()
     problems = [*wrong_law, *problems]
     try:

@@ -253,12 +253,13 @@ def _with_physics(subject: Subject, physics: str) -> Subject:
     law, maps = subject.law, subject.law.maps
     if maps is None and law.name != TABLE_LAW:
         return subject
-    if maps is not None and not all(emap.from_table for emap in maps.maps):
+    heat = physics != _physics()[0]
+    from_files = [] if maps is None else [emap for emap in maps.maps if not emap.from_table]
+    if any(emap.inlet_heat != heat for emap in from_files):
         raise InputError(
             f"got {physics} with a map, which has the physics that it was made with; allowed: films of the film table; "
             "make the map of a job with this physics in [solver]"
         )
-    heat = physics != _physics()[0]
     if heat == law.inlet_heat:
         return subject
     if heat and subject.scene.lubricant is not None:
@@ -266,7 +267,7 @@ def _with_physics(subject: Subject, physics: str) -> Subject:
         from ehdmaps.physics.solids import STEEL
 
         heat_data(subject.scene.lubricant, STEEL)
-    if maps is not None:
+    if maps is not None and not from_files:
         from mbs.scene.map_set import table_maps
 
         maps = table_maps(subject.scene, heat)
@@ -368,13 +369,13 @@ _ROWS = (
     SceneChoice(
         "physics",
         "NAME",
-        "heat in films of the film table: isothermal | inlet-heat, by the rule of the inlet",
-        "isothermal",
+        "heat in films of the film table: inlet-heat, by the rule of the inlet | isothermal",
+        "inlet-heat, where the conductivity of the oil is known",
         one_of(_physics),
         _with_physics,
-        example="inlet-heat",
+        example="isothermal",
         concerned="heat",
-        usual=lambda physics: physics == _physics()[0],
+        usual=lambda physics: physics == _physics()[1],
     ),
     SceneChoice(
         STRUCTURE.name,

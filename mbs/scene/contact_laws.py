@@ -99,7 +99,7 @@ _LABELS = {"hertz": "dry Hertz", TABLE_LAW: "film table", **{name: one.label for
 
 
 def law_in_force(
-    name: str | None, maps: MapSet | None, scene: Scene, inlet_heat: bool = False
+    name: str | None, maps: MapSet | None, scene: Scene, inlet_heat: bool | None = None
 ) -> tuple[str, MapSet | None]:
     """The law that is meant, and its maps: all commands and `mbs.assemble` ask here.
 
@@ -112,8 +112,8 @@ def law_in_force(
         The maps that were given.
     scene : Scene
         Bearings and oil.
-    inlet_heat : bool
-        Whether heat in the inlet thins films of the film table.
+    inlet_heat : bool or None
+        Whether heat in the inlet thins films of the film table; None for the default.
 
     Raises
     ------

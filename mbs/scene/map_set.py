@@ -299,7 +299,7 @@ def _made_for(emap: EHDMap) -> str:
 def _made_by(emap: EHDMap) -> str:
     """Way in which a map was made."""
     films = "films from the film table" if emap.from_table else f"solver {emap.solver}"
-    films += ", inlet heat" if emap.inlet_heat else ""
+    films += ", inlet heat" if emap.inlet_heat else ", isothermal" if emap.from_table else ""
     return films + structure_words(emap)
 
 
@@ -319,15 +319,15 @@ def speeds_of_laws(geometry: BearingGeometry, scene: Scene) -> tuple[float, floa
     return _SPEEDS[0], max(_SPEEDS[1], _BEYOND * fastest)
 
 
-def table_maps(scene: Scene, inlet_heat: bool = False) -> MapSet:
+def table_maps(scene: Scene, inlet_heat: bool | None = None) -> MapSet:
     """Maps of all types of bearing of a scene, over the usual ranges and those of the scene; a second each.
 
     Parameters
     ----------
     scene : Scene
         Bearings and oil.
-    inlet_heat : bool
-        Whether heat in the inlet thins the films, by its rule (`ehdmaps.physics.heat`).
+    inlet_heat : bool or None
+        Whether heat in the inlet thins the films, by its rule (`ehdmaps.physics.heat`); None for the default.
 
     Raises
     ------
@@ -364,7 +364,7 @@ def again_from_table(maps: MapSet, scene: Scene) -> MapSet:
     return found.each(lambda emap: emap if emap in kept else emap.with_structure(first.structural_law))
 
 
-def _from_table(scene: Scene, inlet_heat: bool, known: Sequence[EHDMap], make: Callable[..., EHDMap]) -> MapSet:
+def _from_table(scene: Scene, inlet_heat: bool | None, known: Sequence[EHDMap], make: Callable[..., EHDMap]) -> MapSet:
     """Maps of a scene: some that are known, and new ones."""
     from ehdmaps.jobs.make.table_law import TEMPERATURES
 
@@ -393,7 +393,7 @@ def _made(
     lubricant: Lubricant,
     speeds: tuple[float, float],
     temperatures: tuple[float, float],
-    inlet_heat: bool,
+    inlet_heat: bool | None,
 ) -> EHDMap:
     """Map of one type of bearing, made once in a process."""
     from ehdmaps.jobs.make.table_law import table_map  # with the solver, for what the table does not know

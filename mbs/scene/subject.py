@@ -40,8 +40,8 @@ class LawChoice:
         Which films it is to have.
     supply : OilSupply or None
         Oil supply of all bearings; None for that of the scene, or of the map.
-    inlet_heat : bool
-        Whether heat in the inlet thins films of the film table; the maps of it know it themselves, too.
+    inlet_heat : bool or None
+        Whether heat in the inlet thins films of the film table; None for the default. Maps of it know it themselves.
     """
 
     label: str
@@ -49,7 +49,7 @@ class LawChoice:
     maps: MapSet | None = None
     films: Films | None = None
     supply: OilSupply | None = None
-    inlet_heat: bool = False
+    inlet_heat: bool | None = None
 
     @property
     def has_films(self) -> bool:

@@ -18,6 +18,7 @@ preload of springs     20 %                    assumed; loads with "preload" in 
 cage angle             a pitch, each bearing   cages stand anywhere
 loads                  none                    held, and said
 oil supply             alternatives, no band   flooded where none is stated; beside it oil bath, oil air, grease
+axis of balls          alternatives, no band   other hypotheses in place of outer race control
 =====================  ======================  =====================================================================
 
 Whatever states a tolerance replaces its row, see `mbs.unknowns.statement`. The viscosity of a class is a shift of
@@ -27,6 +28,7 @@ temperature to an equal viscosity: no new law is needed for it.
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
@@ -66,7 +68,7 @@ SUPPLIES = ("oil bath", "oil air", "grease")
 
 
 def held_open_of(model: Model) -> tuple[Unknown, ...]:
-    """List all that a model leaves open: what its law feels, and other oil supplies beside it.
+    """List all that a model leaves open: what its law feels, and other oil supplies and axes of balls beside it.
 
     Parameters
     ----------
@@ -74,10 +76,8 @@ def held_open_of(model: Model) -> tuple[Unknown, ...]:
         The model.
     """
     flooded = all(supply.flooded for supply in model.supplies.values())  # that of the job of a map is stated
-    return (
-        *held_open(model.scene, model.has_films),
-        *(other_supplies(model.scene) if model.has_films and flooded else ()),
-    )
+    supplies = other_supplies(model.scene) if model.has_films and flooded else ()
+    return (*held_open(model.scene, model.has_films), *supplies, *hypotheses(model.scene))
 
 
 def held_open(scene: Scene, films: bool = True) -> tuple[Unknown, ...]:
@@ -213,6 +213,26 @@ def _layers(scene: Scene) -> Iterator[Unknown]:
     held = ", ".join(f"{least * layer:.3g} to {most * layer:.3g} um" for layer in layers)
     looks, one = looks_of([_at(with_layers, scene, factor) for factor in (least, most)])
     yield Unknown("oil layer", "oil_layer", held, why, looks, one)
+
+
+def hypotheses(scene: Scene) -> Iterator[Unknown]:
+    """Other axes of all balls together, where those of the default are in force."""
+    if not scene.has_points:
+        return
+    from ehdmaps.physics.point.ball_geometry import HYPOTHESES
+
+    usual, *others = HYPOTHESES
+    names = [entry.name for entry in scene.located if getattr(entry.geometry, "hypothesis", "") == usual]
+    for text in others if names else ():
+        changed = scene
+        for name in names:
+            changed = with_bearing(changed, name, functools.partial(_about, hypothesis=text))
+        yield Unknown(text, "hypothesis", f"in place of {usual}", "no rule of balls is sure", (changed,), beside=True)
+
+
+def _about(entry: LocatingSpec, *, hypothesis: str) -> LocatingSpec:
+    """A ball bearing whose balls turn about another axis."""
+    return dataclasses.replace(entry, geometry=dataclasses.replace(entry.geometry, hypothesis=hypothesis))
 
 
 def _preload(scene: Scene) -> Iterator[Unknown]:

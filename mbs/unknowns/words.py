@@ -13,9 +13,6 @@ _FIRST, _SECOND = ("clearance",), ("temperature", "viscosity", "pressure_viscosi
 NOT_IN_IT = "damping of seats and joints, loads, and masses and bodies of the scene"
 """Unknowns that no band holds, of any machine."""
 
-BALL_CAGE = "the cage hypothesis of balls"
-"""Unknowns that bands of machines with balls do not hold besides."""
-
 
 def open_lines(unknowns: Sequence[Unknown], more: str = "; each is listed by mbs check") -> list[str]:
     """Head of a result: what is held open, by how much and why, in three lines at most; none without bearings.
@@ -85,13 +82,13 @@ def missing_words(scene: Scene, unknowns: Sequence[Unknown]) -> str:
         What is held open of it.
     """
     held = [one.name for one in unknowns if not one.looks]
-    beside = [one.name for one in unknowns if one.beside]
     groups = {one.group for one in unknowns}
-    if beside:
-        held.append(f"oil supply ({', '.join(beside)})")
-    elif groups & {"temperature", "pressure_viscosity"} and "oil_layer" not in groups:
+    for words, group in (("oil supply", "supply"), ("axis of balls", "hypothesis")):
+        if group in groups:
+            held.append(f"{words} ({', '.join(one.name for one in unknowns if one.group == group)})")
+    if "supply" not in groups and groups & {"temperature", "pressure_viscosity"} and "oil_layer" not in groups:
         held.append("oil supply")  # films that nobody looked at on other supplies
-    return f"not in it: {', '.join([NOT_IN_IT, *([BALL_CAGE] if scene.has_points else []), *held])}"
+    return f"not in it: {', '.join([NOT_IN_IT, *held])}"
 
 
 def _together(unknowns: Iterable[Unknown]) -> list[str]:

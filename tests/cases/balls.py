@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import optimize
 
-from ehdmaps.physics.point.ball_geometry import BallGeometry
+from ehdmaps.physics.point.ball_geometry import BISECTOR, INNER, NO_MOMENT, OUTER, BallGeometry
 from ehdmaps.physics.solids import STEEL
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.laws import dry_law
@@ -54,12 +54,13 @@ def cross(a, b):
     return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
-def rolls(spot, touches, speeds):
+def rolls(spot, touches, speeds, hypothesis=OUTER):
     """Speed of a ball around x, its spin in space (3,), and what velocities are left, by velocities alone.
 
     The middle of the ball is at `spot`, the middles of the contacts stand at `touches` from there, inner and outer.
-    Outer race control: the surfaces do not slip at either, along the ring or across it, and do not drill at the outer
-    one. Five equations for four unknowns, which they fulfil.
+    The surfaces do not slip at either, along the ring or across it, and do not drill at the raceway that controls the
+    ball; or its axis, seen from the cage, stands across the middle of both normals. Five equations for four unknowns,
+    which they fulfil.
     """
     axis, rows, right = np.array([1.0, 0.0, 0.0]), [], []
     around = cross(axis, spot) / np.linalg.norm(spot)
@@ -67,9 +68,11 @@ def rolls(spot, touches, speeds):
         for along in (around, cross(touch, around) / np.linalg.norm(touch)):
             rows.append([along @ cross(axis, spot), *cross(touch, along)])
             right.append(speed * along @ cross(axis, spot + touch))
-    normal = touches[1] / np.linalg.norm(touches[1])
-    rows.append([0.0, *normal])
-    right.append(speeds[1] * axis @ normal)
+    inner, outer = (touch / np.linalg.norm(touch) for touch in touches)
+    normal = {OUTER: outer, INNER: inner}.get(hypothesis, (outer - inner) / np.linalg.norm(outer - inner))
+    ring = {OUTER: speeds[1], INNER: speeds[0]}.get(hypothesis)
+    rows.append([-normal @ axis if ring is None else 0.0, *normal])
+    right.append(0.0 if ring is None else ring * axis @ normal)
     size = np.array([np.linalg.norm(spot), *3 * [np.linalg.norm(touches[0])]])
     matrix, right = np.array(rows) / size, np.array(right)
     found = np.linalg.lstsq(matrix, right, rcond=None)[0]
@@ -92,8 +95,9 @@ def balls_in_space(geometry, pose, inner_speed=0.0, outer_speed=0.0, material=ST
     """Force on the inner ring (6,) and its balls, by vectors in space: Jones' and Harris' balance.
 
     Unknowns: the two coordinates of each ball. Its speed around the axis and its spin come from the velocities of the
-    surfaces. Traction at the outer raceway is what gives the ball the change of its spin that its way around the axis
-    asks for. Nothing of the product but geometry and Hertz coefficients. `only` is the number of balls that count.
+    surfaces. Traction at the outer raceway, or at both as the hypothesis has it, is what gives the ball the change of
+    its spin that its way around the axis asks for. Nothing of the product but geometry and Hertz coefficients. `only`
+    is the number of balls that count.
     """
     coefficient = [contact.coefficient for contact in geometry.contacts(material)]
     diameter, pitch = geometry.ball_diameter, geometry.pitch_diameter
@@ -129,18 +133,20 @@ def balls_in_space(geometry, pose, inner_speed=0.0, outer_speed=0.0, material=ST
             around = cross(ring_axis, out)
             # from the ball's centre to the raceways
             touches = -0.5 * diameter * ei, -0.5 * diameter * eo
-            speed, spin, left = rolls(0.5 * pitch * out, touches, (inner_speed, outer_speed))
-            change = cross(speed * ring_axis, 0.1 * mass * diameter**2 * spin)
-            touch = touches[1]
+            speed, spin, left = rolls(0.5 * pitch * out, touches, (inner_speed, outer_speed), geometry.hypothesis)
+            change = (geometry.hypothesis != NO_MOMENT) * cross(speed * ring_axis, 0.1 * mass * diameter**2 * spin)
             # traction lies in the plane, across the normal; its moment about the ball's centre is the change
-            direction = cross(around, eo)
-            traction = direction * (change @ around) / (cross(touch, direction) @ around)
+            inner = {INNER: 2.0, BISECTOR: 1.0}.get(geometry.hypothesis, 0.0) * qi / (qi + qo) if qi > 0.0 else 0.0
+            tractions = []
+            for touch, e, share in zip(touches, (ei, eo), (inner, 1.0 - inner), strict=True):
+                direction = cross(around, e)
+                tractions.append(share * direction * (change @ around) / (cross(touch, direction) @ around))
             centrifugal = 0.5 * mass * pitch * speed**2 * out
             angles = (math.atan2(ei @ ring_axis, ei @ out), math.atan2(-eo @ ring_axis, -eo @ out))
             ball = InSpace(
-                left, speed, spin, angles, (qi, qo), float(np.linalg.norm(traction)), float(centrifugal @ out)
+                left, speed, spin, angles, (qi, qo), float(np.linalg.norm(tractions[1])), float(centrifugal @ out)
             )
-            return qi * ei + qo * eo + traction + centrifugal, qi * ei, ball
+            return qi * ei + qo * eo + sum(tractions) + centrifugal, qi * ei + tractions[0], ball
 
         def unbalanced(place, parts=parts, out=out):
             total = parts(place)[0]

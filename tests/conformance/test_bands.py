@@ -270,9 +270,10 @@ def test_bands_are_told_and_dry_or_standing_bearings_have_none():
     scene = parse_scene(SCENE + PAIR, "rotor", "rotor.toml")
     model = assemble(scene, "table")
     result = modes(model, Operation(scene.speed))
-    # the table states about 1 % of k and c: half of that of a frequency at most, and some by thicker films
+    # the table states about 1 % of k and c: half of that of a frequency at most, and some by thicker films, with heat
+    # in the inlet a third of its effect besides
     part = result.modes.bands.frequency / result.modes.frequency
-    assert part.min() > 0.0 and part.max() < 0.02
+    assert part.min() > 0.0 and part.max() < 0.03
     assert "film table of points" in result.dataset.attrs["bands"]
     assert law_changes(model, [scene.speed]) is None
     assert modes(model, Operation(0.0)).modes.bands is None

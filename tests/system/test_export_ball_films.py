@@ -15,7 +15,9 @@ from fmpy.validation import validate_fmu
 from ehdmaps.errors import SolverError
 from ehdmaps.exports.fmu.binaries import platforms
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import FilmConditions, OilSupply
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
+from ehdmaps.physics.surface import Surface
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_point import BallPoint
 from mbs.bearings.balls.films import ball_films
@@ -33,12 +35,16 @@ from tests.unit.test_ball_relaxing import by_hand
 SPEED, WARM, STEP = 3000.0 * math.pi / 30.0, 333.15, 5e-6
 FELT = [0, 1, 2, 4, 5]
 PLACE = np.array([95e-6, -3e-6, 1e-6, 0.0, 2e-5, -4e-5])
+REAL = FilmConditions(inlet_heat=True, supply=OilSupply(2e-6), surface=Surface(0.1e-6))
+"""Films with heat, which is the default, on an oil layer, between rough surfaces."""
+REAL_WORDS = ("--supply", "2 um", "--roughness", "0.1 um")
 
 
 @pytest.fixture(scope="module")
 def element():
     geometry = ball_estimate("6208")
-    law = ball_films(geometry, Lubricant.named("FVA3"), geometry.entrainment_speed(SPEED), WARM, solves=False).law
+    u = geometry.entrainment_speed(SPEED)
+    law = ball_films(geometry, Lubricant.named("FVA3"), u, WARM, solves=False, conditions=REAL).law
 
     def films(inner, outer):
         return law
@@ -52,7 +58,7 @@ def units(tmp_path_factory):
     words = ("--load", "1 kN", "--axial", "2 kN", "--temperature", "60 degC", "--speed", "3000 rpm", "--law", "table")
     with mock.patch("ehdmaps.exports.fmu.unit.platforms", return_value=platforms()[:1]):
         for name in ("2.fmu", "3.fmi3.fmu"):
-            assert main(["bearing", "6208", *words, "--films", "memory", "-o", str(folder / name)]) == 0
+            assert main(["bearing", "6208", *words, *REAL_WORDS, "--films", "memory", "-o", str(folder / name)]) == 0
     return {name[0]: folder / name for name in ("2.fmu", "3.fmi3.fmu")}
 
 
@@ -138,7 +144,7 @@ def test_file_for_ross_is_contacts_in_series(tmp_path, rpm):
         at = written["frequency"][row]
         speed = at if len(rpm) > 1 else SPEED
         u = geometry.entrainment_speed(speed)
-        law = ball_films(geometry, Lubricant.named("FVA3"), u, WARM, solves=False).law
+        law = ball_films(geometry, Lubricant.named("FVA3"), u, WARM, solves=False, conditions=FilmConditions(True)).law
         point = BallPoint.at(BallForce(geometry, law), (2000.0, 1000.0, 0.0), speed)
         balls = point.force.loads(point.pose, inner_speed=speed)
         z = by_hand(point.force, balls, speed, 1j * max(at, 1e-3))

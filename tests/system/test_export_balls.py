@@ -18,6 +18,7 @@ from ehdmaps.exports.fmu.binaries import platforms
 from ehdmaps.jobs.cli import main as export
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
+from ehdmaps.physics.point.ball_geometry import HYPOTHESES
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.films import ball_films
 from mbs.bearings.balls.laws import dry_law
@@ -53,10 +54,10 @@ def films(geometry):
 
 @pytest.fixture(scope="module")
 def exported(tmp_path_factory):
-    """Bearing, laws over the speed and compiled kernel: dry deep groove, and angular contact with films."""
+    """Bearing, laws over the speed and compiled kernel: dry deep groove, balls about the bisector; angular, films."""
     folder, found = tmp_path_factory.mktemp("balls"), {}
     for name, filmed in (("6208", False), ("7208B", True), ("3208", True)):
-        geometry = ball_estimate(name)
+        geometry = dataclasses.replace(ball_estimate(name), hypothesis=HYPOTHESES[0 if filmed else 2])
         ends = (geometry.entrainment_speed(rpm * RPM) for rpm in (1000.0, 6000.0))
         dry = dry_law(geometry, damping_time=DAMPER)
         laws = BALLS.speed_laws(BallForce(geometry, dry), films(geometry) if filmed else None, tuple(ends))

@@ -11,8 +11,10 @@ from fmpy.validation import validate_fmu
 
 from ehdmaps.exports.fmu.binaries import platforms
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import FilmConditions, OilSupply
 from ehdmaps.physics.rollers.ribbed_geometry import ribbed_estimate
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
+from ehdmaps.physics.surface import Surface
 from mbs.bearings.locating.locating_block import FELT
 from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
@@ -29,13 +31,15 @@ SPEED, WARM, STEP = 3000.0 * math.pi / 30.0, 333.15, 5e-6
 @pytest.mark.parametrize(("name", "fmi"), [("32208", "2"), ("NUP210", "3")])
 def test_unit_in_time_is_the_element(tmp_path, name, fmi):
     """Up to 60 um within 0.2 ms, so that rollers lift off: both end in the balance of the rollers to 1e-9, and read the
-    same law and springs."""
+    same law and springs, with heat, on an oil layer and between rough surfaces."""
     geometry = tapered_estimate(name) if name[0].isdigit() else ribbed_estimate(name)
     force = TaperedForce(geometry)
-    oil = OilOfLines("table", Lubricant.named("FVA3"), WARM, 1.05 * geometry.entrainment_speed(SPEED))
+    real = FilmConditions(inlet_heat=True, supply=OilSupply(2e-6), surface=Surface(0.1e-6))
+    oil = OilOfLines("table", Lubricant.named("FVA3"), WARM, 1.05 * geometry.entrainment_speed(SPEED), real)
     element = LocatingElement("b", "i", "o", force, films=FilmsOfLines(geometry, oil), memory="memory")
     path = tmp_path / ("b.fmu" if fmi == "2" else "b.fmi3.fmu")
-    words = ("--load", "1 kN", "--axial", "2 kN", "--temperature", "60 degC", "--speed", "3000 rpm", "--oil", "FVA3")
+    words = ("--load", "1 kN", "--axial", "2 kN", "--temperature", "60 degC", "--speed", "3000 rpm", "--oil", "FVA3",
+             "--supply", "2 um", "--roughness", "0.1 um")  # fmt: skip
     with mock.patch("ehdmaps.exports.fmu.unit.platforms", return_value=platforms()[:1]):
         assert main(["bearing", name, *words, "--law", "table", "--films", "memory", "-o", str(path)]) == 0
     assert validate_fmu(str(path)) == []

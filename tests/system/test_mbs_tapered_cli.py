@@ -55,7 +55,10 @@ def test_films_are_the_default_and_feel_oil_and_roughness(capsys, here, bearing)
     ask = (*bearing, "--load", "5 kN", "--speed", "3000 rpm")
     pages = {
         words: run(capsys, *ask, *words)[1]
-        for words in ((), ("--law", "table"), ("--law", "formula"), ("--oil", "ISO VG 10"), ("--roughness", "0.5 um"))
+        for words in (
+            *((), ("--law", "table"), ("--law", "formula"), ("--oil", "ISO VG 10"), ("--roughness", "0.5 um")),
+            *(("--physics", "isothermal"), ("--supply", "grease")),
+        )
     }
 
     def along(words, label):
@@ -67,7 +70,10 @@ def test_films_are_the_default_and_feel_oil_and_roughness(capsys, here, bearing)
     assert along(("--roughness", "0.5 um"), "damping,") < along((), "damping,")
     assert "roughness 0.5 um" in pages["--roughness", "0.5 um"]
     formula = along(("--law", "formula"), "stiffness")
-    assert formula == pytest.approx(along((), "stiffness"), rel=0.03)  # of the formula's film offset
+    cold = ("--physics", "isothermal")
+    assert formula == pytest.approx(along(cold, "stiffness"), rel=0.03)  # of the formula's film offset
+    films = [along(words, "smallest central film") for words in (cold, (), ("--supply", "grease"))]
+    assert films == sorted(films, reverse=True) and 0.0 < films[2] < 0.75 < films[1] < 0.97 * films[0]
     assert "damping is far too low" in pages["--law", "formula"]
 
 
@@ -206,7 +212,7 @@ def test_films_of_the_table_act_in_the_balance(capsys, here) -> None:
     assert np.max(np.abs(found[0] / expected[0] - 1.0)) < 1e-8  # cubics between 1200 nodes
     assert np.max(np.abs(found / expected - 1.0)) < 2e-2  # the law has corners at its own points, rounded in a cell
     status, out, _ = run(capsys, *LOADED, "--law", "table")
-    assert status == 0 and "film table at radius and speed of the middle, rib dry" in out
+    assert status == 0 and "film table at radius and speed of the middle, inlet heat, rib dry" in out
     rows = {line[2:10].strip(): line[42:].split() for line in out.splitlines() if line[42:].strip()}
     dry = TaperedPoint.at(FORCE, (2000.0, 5000.0, 0.0), 3000.0 * RPM)
     assert 0.8e-6 * dry.stiffness[1, 1] < float(rows["stiffnes"][0]) < 1e-6 * dry.stiffness[1, 1]

@@ -112,10 +112,12 @@ class TestTradeoff:
         scene = dataclasses.replace(scene, frequencies=scene.frequencies[::20])
         found = tradeoff(scene, [], settings=TradeoffSettings(scene.campbell, runs=False))
         rows = {(choice.group, choice.label): choice for choice in found.choices}
-        # no formula, no supply, no slices: balls have none
+        # no formula, no slices: balls have none
         assert {group for group, _ in rows} == {
-            f"linear: {words}" for words in ("law", "what is held open", "cut-off", "cage angles")
+            f"linear: {words}" for words in ("law", "oil supply", "what is held open", "cut-off", "cage angles")
         }
+        for label in ("films without heat in the inlet", "axis of balls: no moment"):
+            assert rows["linear: what is held open", label].errors["damping ratio"].largest > 1e-3
         assert all(choice.solved == choice.asked for choice in found.choices)
         dry, slow, memory = (
             rows["linear: law", label].errors for label in ("dry Hertz", "film table, slow films", "film table, memory")

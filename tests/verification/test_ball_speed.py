@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
+from ehdmaps.physics.point.ball_geometry import BISECTOR, HYPOTHESES, INNER, NO_MOMENT, OUTER
 from ehdmaps.physics.solids import STEEL
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_motion import ball_motion
 from mbs.bearings.balls.ball_point import BallPoint
-from mbs.bearings.balls.ball_speed import Drive, ball_loads, orbit
+from mbs.bearings.balls.ball_speed import Drive, ball_loads, turned
 from mbs.bearings.balls.laws import dry_law
 from mbs.output.one_bearing.balls import BALLS
 from mbs.output.one_bearing.files import point_dataset
@@ -30,53 +31,56 @@ def directions(ai, ao):
     return math.sin(ai), math.cos(ai), math.sin(ao), math.cos(ao)
 
 
-def in_vectors(ratio, ai, ao, inner, outer):
+def in_vectors(ratio, ai, ao, inner, outer, hypothesis):
     """Speed around the axis and spin in space, at a pitch radius of one half."""
     touches = (
         -0.5 * ratio * np.array([math.sin(ai), math.cos(ai), 0.0]),
         0.5 * ratio * np.array([math.sin(ao), math.cos(ao), 0.0]),
     )
-    speed, spin, left = rolls(np.array([0.0, 0.5, 0.0]), touches, (inner, outer))
+    speed, spin, left = rolls(np.array([0.0, 0.5, 0.0]), touches, (inner, outer), hypothesis)
     assert left < 1e-14
     return speed, spin
 
 
-def test_no_slip_at_both_raceways_and_no_spin_at_the_outer_one() -> None:
+@pytest.mark.parametrize("hypothesis", HYPOTHESES)
+def test_no_slip_at_both_raceways_and_the_axis_of_a_hypothesis(hypothesis) -> None:
     """Random bearings and angles, either ring turning: round-off. The moment is the change of the ball's spin."""
-    draw = np.random.default_rng(1)
-    for _ in range(300):
+    draw, axis = np.random.default_rng(1), HYPOTHESES.index(hypothesis)
+    for _ in range(100):
         ratio, (ai, ao), (inner, outer) = (
             draw.uniform(0.05, 0.3),
             draw.uniform(-0.2, 1.1, 2),
             draw.uniform(-1.0, 1.0, 2),
         )
-        drive = Drive(inner, outer, math.nan, ratio, 1.0, 0.4)
-        speed, spin = in_vectors(ratio, ai, ao, inner, outer)
-        found, by_i, by_o = orbit(drive, *directions(ai, ao))
+        drive = Drive(inner, outer, math.nan, ratio, 1.0, 0.4, axis)
+        at, step = (ratio, ai, ao, inner, outer, hypothesis), 1e-6
+        speed, spin = in_vectors(*at)
+        found, by_i, by_o, k, k_i, k_o = turned(drive, *directions(ai, ao))
         assert abs(found - speed) < 1e-12
-        step = 1e-6
-        for slope, way in ((by_i, (1.0, 0.0)), (by_o, (0.0, 1.0))):
-            ahead, behind = (
-                in_vectors(ratio, ai + s * way[0], ao + s * way[1], inner, outer)[0] for s in (step, -step)
+        for n, slopes in ((1, (by_i, k_i)), (2, (by_o, k_o))):
+            there = [[x + s * (i == n) if i < 5 else x for i, x in enumerate(at)] for s in (step, -step)]
+            ahead, behind = ((in_vectors(*one)[0], turned(drive, *directions(*one[1:3])).k) for one in there)
+            assert slopes == pytest.approx(
+                [(a - b) / (2.0 * step) for a, b in zip(ahead, behind, strict=True)], abs=2e-9
             )
-            assert slope == pytest.approx((ahead - behind) / (2.0 * step), abs=1e-9)
         # M_g = w_c x J spin, about the direction x times r;  J = m Dw^2/10, the drive's m d_m/2 = 1
         _, traction, _, _ = ball_loads(drive, found)
         if traction > -0.499 * found**2:  # see ball_loads
-            moment = np.cross([speed, 0.0, 0.0], spin) * 0.1 * 2.0 * ratio**2
-            assert 0.5 * ratio * traction * math.sin(ao) == pytest.approx(moment[2], abs=1e-13)
+            moment = np.cross([speed, 0.0, 0.0], spin) * 0.1 * 2.0 * ratio**2 * (hypothesis != NO_MOMENT)
+            assert 0.5 * ratio * traction * k == pytest.approx(moment[2], abs=1e-12)
 
 
 def test_hypotheses_agree_at_equal_angles() -> None:
     """Outer and inner race control and the bisector: the formula of nominal angles; rings that turn alike: theirs."""
     for angle in (-0.3, 0.0, 0.7):
         for inner, outer in ((1.0, 0.0), (0.0, 1.0), (0.7, -0.4)):
-            drive = Drive(inner, outer, math.nan, 0.2, 1.0, 0.4)
             part = 0.2 * math.cos(angle)
             nominal = 0.5 * (inner * (1.0 - part) + outer * (1.0 + part))
-            assert orbit(drive, *directions(angle, angle))[0] == pytest.approx(nominal, abs=1e-15)
+            for axis in range(len(HYPOTHESES)):
+                drive = Drive(inner, outer, math.nan, 0.2, 1.0, 0.4, axis)
+                assert turned(drive, *directions(angle, angle)).speed == pytest.approx(nominal, abs=1e-15)
     for ai, ao in ((0.9, 0.5), (0.2, -0.1)):
-        assert orbit(Drive(0.6, 0.6, math.nan, 0.2, 1.0, 0.4), *directions(ai, ao))[0] == 0.6
+        assert turned(Drive(0.6, 0.6, math.nan, 0.2, 1.0, 0.4), *directions(ai, ao)).speed == 0.6
 
 
 CASES = [
@@ -104,6 +108,9 @@ def test_stiffness_of_fast_bearings_by_another_program(case) -> None:
 @pytest.mark.parametrize(
     ("name", "material", "axial", "inner", "outer"),
     [
+        (f"6208, {INNER}", STEEL, 2000.0, 30e3, 0.0),
+        (f"7014C, {BISECTOR}", STEEL, 500.0, 10e3, 0.0),
+        (f"7208B, {NO_MOMENT}", STEEL, 1000.0, 8e3, -4e3),
         ("6208", STEEL, 2000.0, 30e3, 0.0),
         ("7014C", STEEL, 500.0, 10e3, 0.0),
         ("7014C", NITRIDE, 500.0, 16e3, 0.0),
@@ -119,7 +126,9 @@ def test_jones_balance(name, material, axial, inner, outer) -> None:
 
     Differences of 20 nm: their second order, and the residual of scipy's root over the step, leave 2e-5 of K.
     """
+    name, _, hypothesis = name.partition(", ")
     geometry, speeds = ball_estimate(name).with_clearance(0.0), (inner * RPM, outer * RPM)
+    geometry = dataclasses.replace(geometry, hypothesis=hypothesis or OUTER)
     force = BallForce(geometry, dry_law(geometry, material), material)
     point = BallPoint.at(force, (axial, 0.0, 0.0), *speeds)
 
@@ -175,6 +184,18 @@ def test_slip_and_spin_are_those_of_the_velocities() -> None:
         slips = np.abs(motion.slip[0]).max()
         assert slips < 1e-9 if balls is rolling else slips > 0.1
         assert np.abs(motion.spin[0]).min() > 100.0
+    for hypothesis in HYPOTHESES:
+        other = dataclasses.replace(geometry, hypothesis=hypothesis)
+        other = BallForce(other, dry_law(other))
+        balls = other.loads(pose, inner_speed=speeds[0], outer_speed=speeds[1])
+        motion = ball_motion(other, balls, *speeds)
+        for j, (ai, ao) in enumerate(balls.contact_angle.T):
+            normals = [np.array([math.sin(a), math.cos(a), 0.0]) for a in (ai, ao)]
+            spot, touches = np.array([0.0, pitch, 0.0]), (-half * normals[0], half * normals[1])
+            _, spin, _ = rolls(spot, touches, speeds, hypothesis)
+            wanted = [(np.array([ring, 0.0, 0.0]) - spin) @ one for ring, one in zip(speeds, normals, strict=True)]
+            assert motion.spin[:, j] == pytest.approx(wanted, abs=1e-7)
+        assert np.abs(motion.slip).max() < 1e-9
 
 
 def test_slip_and_spin_are_outputs() -> None:

@@ -24,7 +24,7 @@ from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.catalogue import designated
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, heat_data
+from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, heat_data, heat_in_force
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, FilmConditions, OilSupply
 from ehdmaps.physics.point.ball_geometry import BallGeometry
@@ -112,7 +112,7 @@ def table_map(
     supply: OilSupply | None = None,
     surface: Surface | None = None,
     solver: ContactSolver | None = None,
-    inlet_heat: bool = False,
+    inlet_heat: bool | None = False,
 ) -> EHDMap:
     """Make a map in memory, in about a second, with few points: it is there for its laws.
 
@@ -137,8 +137,9 @@ def table_map(
         Oil supply and surfaces that the laws have by default; flooded and smooth if left out.
     solver : ContactSolver, optional
         What gives the films; the table if left out.
-    inlet_heat : bool
-        Whether heat in the inlet thins the films of the table, by its rule (`ehdmaps.physics.heat`).
+    inlet_heat : bool or None
+        Whether heat in the inlet thins the films of the table, by its rule (`ehdmaps.physics.heat`); None for yes where
+        the conductivity of the oil is known and the table serves.
 
     Raises
     ------
@@ -174,12 +175,14 @@ def table_map(
     # laws let films fade where they are too thick for the points of a map
     chosen = of_groups(solver or solvers.of_map(job))
     why = unserved(job, chosen)
+    if inlet_heat is None:
+        inlet_heat = not why and heat_in_force(None, lubricant)
     if inlet_heat:
         heat_data(lubricant, material)
         if why:
             raise InputError(
                 f"inlet heat of {job.title}: its films have to be solved ({why}); allowed: films of the film table; "
-                'make a map, by `ehdmaps generate` with physics = "inlet-heat" in [solver] of the job'
+                'or physics isothermal; or a map by `ehdmaps generate` of a job with physics = "inlet-heat" in [solver]'
             )
     if isinstance(chosen, TableSolver) and not why:
         made: EHDMap = ReadMap(job, replace(chosen, inlet_heat=inlet_heat))
@@ -238,7 +241,7 @@ def law(
     structural_law: StructuralLaw = "iso16281",
     material: Material = STEEL,
     solver: ContactSolver | None = None,
-    inlet_heat: bool = False,
+    inlet_heat: bool | None = None,
 ) -> ContactLaw | PointLaw:
     """Make a contact law without a map, in about a second; the same one again in a millisecond.
 
@@ -267,8 +270,9 @@ def law(
         Material of a bearing.
     solver : ContactSolver, optional
         What gives the films; the table if left out.
-    inlet_heat : bool
-        Whether heat in the inlet thins the films of the table, by its rule (`ehdmaps.physics.heat`).
+    inlet_heat : bool, optional
+        Whether heat in the inlet thins the films of the table, by its rule (`ehdmaps.physics.heat`); if left out yes,
+        where the conductivity of the oil is known and the table serves. False for isothermal films.
 
     Raises
     ------
@@ -290,7 +294,7 @@ def law(
             raise InputError("contact law of a ball: got a solver; allowed: none, films are read from the table")
         from ehdmaps.maps.points.law import PointLaw
 
-        conditions = FilmConditions(inlet_heat, supply or FLOODED, surface or SMOOTH)
+        conditions = FilmConditions(heat_in_force(inlet_heat, lubricant), supply or FLOODED, surface or SMOOTH)
         return PointLaw(of, lubricant, "series" if kind is None else kind, material, conditions)
     allowed: tuple[LawKind, ...] = ("series", "inner", "outer") if isinstance(of, BearingGeometry) else ("line",)
     chosen = kind or allowed[0]

@@ -27,6 +27,10 @@ from ehdmaps.physics.designations.clearance import ClearanceRange, Named
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.solids import Material, reduced_modulus
 
+HYPOTHESES = OUTER, INNER, BISECTOR, NO_MOMENT = "outer race control", "inner race control", "bisector", "no moment"
+"""Hypotheses on the axis about which a ball turns: it does not drill at the outer or at the inner raceway, stands half
+way between the contact angles, or does that without a gyroscopic moment. See `mbs.bearings.balls.ball_speed`."""
+
 MOST_BALLS = 500
 LARGEST_ANGLE = math.radians(60.0)
 """Largest nominal contact angle [rad]."""
@@ -92,6 +96,9 @@ class BallGeometry(Named):
     tightening : float
         Part of the radial distance of both raceways that fits and warmth take where the clearance is axial; of
         diameters [m].
+        Its rows, each of `balls` balls; those of double row bearings and of matched sets have places of their own.
+    hypothesis : str
+        Which axis a ball turns about, one of `HYPOTHESES`.
 
     Raises
     ------
@@ -123,6 +130,7 @@ class BallGeometry(Named):
     ring_material: Material | None = None
     rows: tuple[BallRow, ...] = ONE_ROW
     tightening: float = 0.0
+    hypothesis: str = OUTER
 
     def __post_init__(self) -> None:
         problems = _problems(self)
@@ -295,6 +303,8 @@ def _problems(geometry: BallGeometry) -> list[str]:
     where = f"ball bearing {geometry.name!r}" if isinstance(geometry.name, str) else "ball bearing"
     problems = [] if isinstance(geometry.name, str) and geometry.name else [f"{where}: has no name"]
     problems += [f"{where}, label: {problem}" for problem in label_problem(geometry.label)]
+    if geometry.hypothesis not in HYPOTHESES:
+        problems.append(f"{where}, hypothesis: got {geometry.hypothesis!r:.60}; allowed: {', '.join(HYPOTHESES)}")
     numbers = (
         ("ball_diameter", "m", 0.0, math.inf, "> 0"),
         ("pitch_diameter", "m", 0.0, math.inf, "> 0"),

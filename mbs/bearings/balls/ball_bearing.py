@@ -6,11 +6,12 @@ both grooves where their nominal contact angle puts them: deep groove bearings s
 lets them go either way; angular contact bearings just touch, without clearance.
 
 Quasi-static: each ball is in balance at the speeds of the rings, and has no inertia against small motions beside that.
-It rolls at both raceways and does not drill at the outer one, whose traction holds the whole gyroscopic moment (outer
-race control), so that its speed around the axis follows its contact angles, see `mbs.bearings.balls.ball_speed`; in the
-derivatives it follows, too, and speeds of the rings are held. That is slow motion. `cage_speed` holds all balls at one
-speed: motion that is too fast for them to follow. The potential of dry contacts takes the arm of the inner
-groove's centre for both displacement and moment; ISO/TS 16281 takes d_m/2 for moments, which is 1 % less.
+It rolls at both raceways about an axis that is a hypothesis: by default it does not drill at the outer one, whose
+traction holds the whole gyroscopic moment (outer race control). Its speed around the axis follows its contact angles,
+see `mbs.bearings.balls.ball_speed`; in the derivatives it follows, too, and speeds of the rings are held. That is slow
+motion. `cage_speed` holds all balls at one speed: motion that is too fast for them to follow. The potential of dry
+contacts takes the arm of the inner groove's centre for both displacement and moment; ISO/TS 16281 takes d_m/2 for
+moments, which is 1 % less.
 
 References
 ----------
@@ -33,7 +34,7 @@ import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.kernel.library import checked, function
-from ehdmaps.physics.point.ball_geometry import BallGeometry
+from ehdmaps.physics.point.ball_geometry import HYPOTHESES, BallGeometry
 from ehdmaps.physics.solids import STEEL, Material
 from mbs.bearings.balls.ball_data import (
     COLUMNS,
@@ -70,9 +71,9 @@ class BallLoads(Loads):
         Approaches of both [m]; below zero a gap, or a film.
     speed : array (Z,)
         Speeds around the axis [rad/s].
-    centrifugal, traction : array (Z,)
-        Centrifugal loads, and tractions at the outer raceway that hold the gyroscopic moment, with the sign of the
-        contact angle [N].
+    centrifugal, traction, inner_traction : array (Z,)
+        Centrifugal loads, and tractions at the outer and the inner raceway that hold the gyroscopic moment, with the
+        sign of the contact angle [N].
     cage_speed : float
         Speed of the cage: the mean of the balls' speeds by their inner loads [rad/s].
     """
@@ -82,16 +83,18 @@ class BallLoads(Loads):
     speed: FloatArray
     centrifugal: FloatArray
     traction: FloatArray
+    inner_traction: FloatArray
     cage_speed: float
 
     @property
     def gyroscopic_traction(self) -> float:
-        """Largest traction that holds a gyroscopic moment, over the load of its ball at the outer raceway.
+        """Largest traction that holds a gyroscopic moment, over the load of its ball at the same raceway.
 
-        Of balls that carry load: films press a little on all others.
+        Of contacts that carry load: films press a little on all others.
         """
-        loaded = self.load[1] > CARRIES * self.load[1].max()
-        return float(np.max(np.abs(self.traction[loaded]) / self.load[1][loaded], initial=0.0))
+        loaded = self.load > CARRIES * self.load[1].max()
+        traction = np.abs([self.inner_traction, self.traction])
+        return float(np.max(traction[loaded] / self.load[loaded], initial=0.0))
 
     def life(self, geometry: BallGeometry, inner_turns: bool) -> ReferenceLife:
         """See `Loads.life`."""
@@ -149,7 +152,8 @@ class BallForce(LocatingForce):
             most_tilt=distance / max(geometry.inner_groove_radius, *(abs(row.place) for row in geometry.rows)),
         )
         mass, diameter, pitch = geometry.ball_mass(material), geometry.ball_diameter, geometry.pitch_diameter
-        self.drive = Drive(0.0, 0.0, math.nan, diameter / pitch, 0.5 * mass * pitch, 0.2 * mass * pitch)
+        axis = float(HYPOTHESES.index(geometry.hypothesis))
+        self.drive = Drive(0.0, 0.0, math.nan, diameter / pitch, 0.5 * mass * pitch, 0.2 * mass * pitch, axis)
         self.angles = np.tile(directions(geometry.balls), len(geometry.rows))
         self.film_loads = law.loads
         turned = np.array([1.0, math.copysign(1.0, angle), math.copysign(1.0, angle), 1.0])
@@ -252,8 +256,8 @@ class BallForce(LocatingForce):
         """See `LocatingForce`."""
         self._angles(len(self._balls), self._balls.ctypes.data)
         rows = self._balls.T.copy()
-        traction, cage = rows[24] * rows[18], float(mean_speed(self._balls, idle))
-        return BallLoads(angle, rows[10:12], rows[12:14], rows[14:16], rows[22], rows[23], traction, cage)
+        cage = float(mean_speed(self._balls, idle))
+        return BallLoads(angle, rows[10:12], rows[12:14], rows[14:16], rows[22], rows[23], rows[24], rows[25], cage)
 
     def forget(self) -> None:
         """See `LocatingForce.forget`."""

@@ -21,7 +21,7 @@ class Balls(PairBlock):
     ----------
     spins : array (count, 2)
         Speeds of the rings by that of the system.
-    lengths, drives : array (count, 7), (count, 6)
+    lengths, drives : array (count, 7), (count, 7)
         `BallShape` and `Drive` in their order, at rest.
     cosine, sine : array (count, longest)
         Directions of the balls in the cage.

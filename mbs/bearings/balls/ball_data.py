@@ -11,10 +11,11 @@ from mbs.bearings.balls.response import SHORTER
 from mbs.bearings.locating.film_memory import rows_of
 from mbs.bearings.locating.normal_law import LawData
 
-COLUMNS = 25
+COLUMNS = 26
 """Numbers that are kept of a ball: `ehd_ball_found`. Force on the ball (2), stiffness (4) and damping (4) of the pair,
 loads of the inner and the outer contact [N], contact angles, approaches [m], directions e_i (2) and e_o (2), places of
-the contacts on their tables; speed around the axis [rad/s], centrifugal load and t of the traction [N]."""
+the contacts on their tables; speed around the axis [rad/s], centrifugal load, tractions at the outer and at the inner
+raceway [N]."""
 
 START = 8
 """Numbers by which a ball begins: `ehd_ball_start`, its centre, that of the inner groove there, and S (4)."""

@@ -141,8 +141,8 @@ def _sliding(balls: BallLoads) -> Finding | None:
     if share <= _SLIP:
         return None
     words = (
-        f"the gyroscopic moment asks for a traction of {share:.2g} of the load at the outer raceway, more than films "
-        f"hold ({_SLIP:g}): balls may slide; more axial load prevents it"
+        f"the gyroscopic moment asks for a traction of {share:.2g} of the load at a raceway, more than films hold "
+        f"({_SLIP:g}): balls may slide, and no rule of their axis is the truth here; more axial load prevents it"
     )
     return Finding(Cause.SLIDING, words, excess=share / _SLIP)
 

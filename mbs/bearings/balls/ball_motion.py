@@ -1,9 +1,10 @@
 """Motion of the surfaces of a ball and its raceways in the contacts: entrainment, slip and spin.
 
 Seen from the cage at w_c, the ball turns at (w_o - w_c) (1 + cos a_o/g, -sin a_o/g), axial and radial, g = Dw/d_m: it
-rolls on the outer raceway and does not drill there, whatever the inner raceway does. A ball that goes around at its own
-speed rolls on the inner raceway, too, where it drills; one that a cage holds at another speed slips there. Rolling at
-both raceways, the ball's surface is not as fast at one as at the other where their contact angles differ.
+rolls on the outer raceway and does not drill there, whatever the inner raceway does; by other hypotheses it rolls about
+another axis. A ball that goes around at its own speed rolls on the inner raceway, too, where it drills; one that a cage
+holds at another speed slips there. Rolling at both raceways, the ball's surface is not as fast at one as at the other
+where their contact angles differ.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from mbs.bearings.balls.ball_bearing import BallForce, BallLoads
+from mbs.bearings.balls.ball_speed import rolling_axis
 
 
 class Motion(NamedTuple):
@@ -61,7 +63,9 @@ def ball_motion(force: BallForce, balls: BallLoads, inner_speed: float, outer_sp
     half, ratio = 0.5 * force.geometry.ball_diameter, force.drive.ratio
     sin, cos = np.sin(balls.contact_angle), np.cos(balls.contact_angle)
     rings = np.array([[inner_speed], [outer_speed]]) - balls.speed
-    axial, radial = rings[1] * (1.0 + cos[1] / ratio), -rings[1] * sin[1] / ratio
+    rolled, (across, along) = rolling_axis(force.drive, sin[0], cos[0], sin[1], cos[1])
+    turn = rings[1] * rolled / ratio
+    axial, radial = turn * along, -turn * across
     # contacts stand at -e_i and +e_o from the middle of the ball
     way = np.array([[-1.0], [1.0]])
     of_rings = rings * half * (1.0 / ratio + way * cos)

@@ -7,6 +7,7 @@ Dowson at the load and entrainment speed of each contact; they tell how thick th
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -103,8 +104,22 @@ class BallPoint(LocatingPoint):
 
     @property
     def gyroscopic_traction(self) -> float:
-        """Largest traction that holds a gyroscopic moment, over the load of its ball at the outer raceway."""
+        """Largest traction that holds a gyroscopic moment, over the load of its ball at the same raceway."""
         return self.elements.gyroscopic_traction
+
+    @property
+    def race_control(self) -> float:
+        """Harris' criterion of all balls: what resists drilling at the outer raceway over that at the inner one.
+
+        Q_o a_o E_o cos(a_i - a_o) over Q_i a_i E_i with the longer semi-axes a and elliptic integrals E: above 1 the
+        outer raceway controls a ball, below it the inner one. NaN without load.
+        """
+        inner, outer = (
+            load * np.asarray(ellipse.semi_axes(load)[1]) * float(ellipse.numbers.second_integral)
+            for load, ellipse in zip(self.elements.load, self.force.geometry.contacts(self.force.material), strict=True)
+        )
+        first, second = self.elements.contact_angle
+        return float(np.sum(outer * np.cos(first - second)) / np.sum(inner)) if np.any(inner > 0.0) else math.nan
 
 
 def ball_dynamic_stiffness(point: BallPoint, omega: FloatArray) -> ComplexArray:

@@ -92,7 +92,9 @@ def balls_in_balance(force: BallForce, balls: BallLoads, conditions: dict[str, A
     slopes = law_slopes(contacts, moved, slopes_of_law, locked=False)
     arms = np.stack([moved.motion[..., :2] - moved.motion[..., 2:], moved.motion[..., 2:]], axis=2)
     by = _Places(arms, contacts.stiffness * moved.approach)
-    stepped = _geometry(_Places(*(one + 1j * _SMALL * more for one, more in zip(at, by, strict=True))), drive)
+    stepped = _geometry(
+        _Places(*(one + 1j * _SMALL * more for one, more in zip(at, by, strict=True))), drive, contacts.stiffness
+    )
     where = film_directions(pose.shape[2])
     slopes.contacts.feel[where], slopes.contacts.turning[where] = (part.imag / _SMALL for part in stepped)
 
@@ -110,7 +112,7 @@ def _contacts(law: BallLaw, shape: BallShape, rows: FloatArray, drive: Drive) ->
     _, k, c = _both([contacts_at(one, rows[:, 14 + i]) for i, one in enumerate((law.inner, law.outer))])
     springs = [one.springs(loads[:, i]) for i, one in enumerate(law.responses)]
     shares, times = (np.stack([getattr(one, name) for one in springs], axis=1) for name in ("shares", "times"))
-    return Contacts(*_geometry(at, drive), k, c, shares, times), at
+    return Contacts(*_geometry(at, drive, k), k, c, shares, times), at
 
 
 def _law_slopes(law: BallLaw, rows: FloatArray, stiffness: FloatArray) -> LawSlopes:
@@ -135,7 +137,7 @@ def _both(sides: list[FloatArray]) -> tuple[FloatArray, FloatArray, FloatArray]:
     return first, second, third
 
 
-def _geometry(at: _Places, drive: Drive) -> tuple[Any, Any]:
+def _geometry(at: _Places, drive: Drive, stiffness: FloatArray) -> tuple[Any, Any]:
     """Vectors h of contacts, (..., Z, 2, 4), and stiffness by which loads turn, (..., Z, 4, 4); of complex ones, too.
 
     The inner contact stands on D - V, the outer one on V.
@@ -148,8 +150,8 @@ def _geometry(at: _Places, drive: Drive) -> tuple[Any, Any]:
     )
     across = np.eye(2) - along[..., :, None] * along[..., None, :]
     turns = (at.loads / length)[..., None, None] * across
-    by_d, by_v = speed_slopes(along, length, drive)
+    by_d, by_v, inner_d, inner_v = speed_slopes(along, length, drive, at.loads, stiffness)
     first, second = turns[..., 0, :, :], turns[..., 1, :, :]
-    top = np.concatenate([first, -first], axis=-1)
+    top = np.concatenate([first + inner_d, inner_v - first], axis=-1)
     bottom = np.concatenate([-first - by_d, first + second - by_v], axis=-1)
     return feel, np.concatenate([top, bottom], axis=-2)

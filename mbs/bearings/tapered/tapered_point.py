@@ -1,8 +1,9 @@
 """One bearing of rollers and ribs at an operating point: where its inner ring comes to rest, what its rollers feel.
 
-The outer ring is held, the inner one moves along x, y and z, and tilts if it may. Contacts are dry. Films of the lines
-are those of formulas at the load, radius and speed of each slice; that of a rib is the formula of Hamrock and Dowson,
-whose ellipses are not longer along the motion, as ribs' may be: an order of magnitude. Films move nothing.
+The outer ring is held, the inner one moves along x, y and z, and tilts if it may. Films of the lines are those of the
+law, at the radius and speed of the middle of a roller; beside dry lines they are those of formulas at the load, radius
+and speed of each slice, and move nothing. That of a rib is the formula of Hamrock and Dowson, whose ellipses are not
+longer along the motion, as ribs' may be: an order of magnitude.
 """
 
 from __future__ import annotations
@@ -18,11 +19,12 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.oil_supply import FLOODED
 from ehdmaps.physics.point.film_formulas import film_of, hamrock_dowson_central
 from ehdmaps.units import written
-from mbs.bearings.films import FormulaFilms
+from mbs.bearings.films import FilmSource, FormulaFilms
 from mbs.bearings.locating.locating_force import Settled
 from mbs.bearings.locating.locating_point import Course, LocatingPoint
 from mbs.bearings.tapered.roller_findings import line_pressures
 from mbs.bearings.tapered.tapered_bearing import TaperedForce, TaperedLoads
+from mbs.model.findings import CARRIES
 
 RIB_FRICTION = 0.05
 """Coefficient of friction at ribs, assumed: mixed friction with an oil film."""
@@ -126,8 +128,15 @@ def _lines(force: TaperedForce, rollers: TaperedLoads, course: Course) -> tuple[
     central, minimum = np.full((2, 2, rollers.angle.size), np.nan)
     if oil is None or not speed > 0.0:
         return central, minimum
+    lines: FilmSource | None = getattr(course.films, "lines", None)
     supply = force.films.points[0].law.supply if force.films.points else FLOODED
     for side in range(2):
+        if lines is not None:
+            state = lines.state(side, rollers.slices[side], speed, course.temperature)
+            films = (state.central_film, state.minimum_film)
+            carries = rollers.slices[side] > CARRIES * rollers.slices[side].max()  # films load all others a little
+            central[side], minimum[side] = (np.fmin.reduce(np.where(carries, film, np.nan), axis=1) for film in films)
+            continue
         for index, place in enumerate(force.positions.tolist()):
             radius = geometry.radius_at(place, side)
             local = tuple(dataclasses.replace(each, radius=radius) for each in contacts)

@@ -27,8 +27,11 @@ NAME = "bearing"
 """How the bearing is called."""
 
 _MATRICES = (("K", "stiffness", SPRING), ("C", "damping", DAMPER))
-_BESIDE = (("K along", "stiffness_along"), ("C along", "damping_along"), ("film", "minimum_film"))
-"""Numbers of which it is told what other oil supplies change."""
+_BESIDE = (
+    *(("K along", "stiffness_along"), ("K axial", "stiffness_axial")),
+    *(("C along", "damping_along"), ("film", "minimum_film")),
+)
+"""Numbers of which it is told what other oil supplies, and other axes of balls, change."""
 
 _ELECTRIC = ("capacitance", "breakdown_low", "breakdown_high")
 _CONTACTS = (("pressure", "hertz_pressure", PRESSURE, np.argmax), ("film", "minimum_film", FILM, np.nanargmin))

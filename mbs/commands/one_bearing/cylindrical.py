@@ -261,7 +261,8 @@ def _with_map(request: Request) -> Request:
             raise InputError(wrong)
         return request
     problems: list[str] = []
-    heat = request.conditions.inlet_heat if emap is None else emap.inlet_heat
+    # by default films that have to be solved are isothermal
+    heat = emap.inlet_heat if emap is not None else request.conditions.inlet_heat if request.physics else None
     speeds, kelvin = request.operating.speeds, request.description.temperature
     made = _table_map(asked.geometry, request.oil, asked.material, speeds, kelvin, heat)
     made_alike = _structured(made, asked.structure, problems)
@@ -276,7 +277,7 @@ def _table_map(
     material: Material,
     speeds: Sequence[float],
     temperature: float,
-    inlet_heat: bool,
+    inlet_heat: bool | None,
 ) -> EHDMap:
     """Map in memory over the usual loads, and over the speeds [rad/s] and the temperature [K] that are asked for."""
     from ehdmaps.jobs.make.table_law import SPEEDS, table_map
@@ -298,7 +299,7 @@ def _words_of(request: Request) -> tuple[str, str]:
     """Law and films."""
     law, emap, oil = request.law, request.asked.emap, request.oil
     if law in ("map", TABLE_LAW) and emap is not None:
-        heat = ", inlet heat" if emap.inlet_heat else ""
+        heat = ", inlet heat" if emap.inlet_heat else ", isothermal"
         table = f"film table, {oil.title}{heat}" if emap.from_table else f"map of {oil.title}, solver {emap.solver}"
         words = table + structure_words(emap)
     elif (formula := laws.FORMULAS.get(law)) is not None:

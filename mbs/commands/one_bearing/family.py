@@ -122,6 +122,8 @@ class Request:
         Damper of a dry law.
     by_default : bool
         Whether the law is that of the default: speeds without films are dry then, and say why.
+    physics : str or None
+        What films are to know of heat, as it was asked for; None for the default.
     memory : bool
         Whether the films of a file for another program have a memory.
     stated_supply : OilSupply or None
@@ -143,6 +145,7 @@ class Request:
     law: str
     damper: Damper
     by_default: bool
+    physics: str | None
     memory: bool
     stated_supply: OilSupply | None
     oil: Lubricant

@@ -40,7 +40,7 @@ from mbs.scene.contact_laws import table_path
 from mbs.scene.fields import MICROMETRE
 from mbs.scene.map_set import TABLE_LAW
 from mbs.scene.scene import Scene
-from mbs.unknowns.held_open import held_open, other_supplies
+from mbs.unknowns.held_open import held_open, hypotheses, other_supplies
 from mbs.unknowns.looks import Band
 from mbs.unknowns.statement import Statement
 from mbs.unknowns.unknown import Unknown
@@ -112,6 +112,7 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
             law=law,
             damper=damper,
             by_default="law" not in chosen,
+            physics=chosen.get("physics"),
             memory=chosen.get("films") == "memory",
             stated_supply=chosen.get("supply") or asked.supply,
             oil=oil,
@@ -235,7 +236,7 @@ def open_of(request: Request) -> tuple[Unknown, ...]:
         What is asked.
     """
     scene = scene_as(request)
-    return (*held_open(scene), *(other_supplies(scene) if request.films else ()))
+    return (*held_open(scene), *(other_supplies(scene) if request.films else ()), *hypotheses(scene))
 
 
 def bands_of(request: Request, points: Points) -> dict[str, Band]:

@@ -27,6 +27,7 @@ from mbs.scene.specs import TaperedSpec
 
 if TYPE_CHECKING:
     from mbs.exports.one_bearing.kind import ExportKind
+    from mbs.scene.locating.line_films import FilmsOfLines
 
 _TAKEN = ("law", "physics", "temperature", "supply", "roughness", "films")
 """Choices that all of them take; those without a contact angle have a clearance too."""
@@ -95,11 +96,11 @@ def _words_of(request: Request) -> tuple[str, str]:
     films = f"films by the formulas of Moes and Dowson-Higginson, {request.oil.title}"
     if request.films:
         rough = "" if conditions.surface.smooth else f", {conditions.surface.label}"
-        warm = ", inlet heat" if conditions.inlet_heat else ""
+        warm = "" if request.law in FORMULAS else f", {conditions.heat_words}"
         layer = "" if conditions.supply.flooded else f", {conditions.supply.label}"
         formula = FORMULAS.get(request.law)
         source = f"{formula.words}{formula.remark}" if formula else "film table"
-        return f"{source} at radius and speed of the middle{warm}{layer}, rib dry{rough}", films
+        return f"{source} at radius and speed of the middle{warm}{layer}, rib dry{rough}", "films of the law"
     return "dry, ISO/TS 16281, rib Hertz" + (f", {damper.words} of each contact" if damper.words else ""), films
 
 
@@ -109,8 +110,8 @@ def _force(request: Request) -> TaperedForce:
     return TaperedForce(request.asked.geometry, damper.constant, damper.time, **request.asked.options)
 
 
-def _films(request: Request) -> Callable[[float], LineFilms] | None:
-    """Laws of both lines by the entrainment speed [m/s]; None where nothing rolls, or none are asked for."""
+def _lines(request: Request) -> FilmsOfLines | None:
+    """Films of both lines by the speeds of the rings; None where nothing rolls, or none are asked for."""
     fastest = max(request.entrainment_speed(speed) for speed in request.operating.speeds)
     if not request.films or not fastest > 0.0:
         return None
@@ -119,13 +120,18 @@ def _films(request: Request) -> Callable[[float], LineFilms] | None:
     geometry, temperature = request.force.geometry, request.description.temperature
     law = request.law if request.law in FORMULAS else TABLE_LAW
     oil = OilOfLines(law, request.oil, temperature, fastest, request.conditions)
-    films = FilmsOfLines(geometry, oil)
-    return lambda u: films(u / geometry.entrainment_speed(1.0), 0.0)
+    return FilmsOfLines(geometry, oil)
+
+
+def _films(request: Request) -> Callable[[float], LineFilms] | None:
+    """Laws of both lines by the entrainment speed [m/s]; None where nothing rolls, or none are asked for."""
+    films, geometry = _lines(request), request.force.geometry
+    return None if films is None else lambda u: films(u / geometry.entrainment_speed(1.0), 0.0)
 
 
 def _at_speed(request: Request) -> Callable[[float], AtSpeed]:
     """The force at a speed of the inner ring; dry where nothing rolls, or no films are asked for."""
-    films = _films(request)
+    films, lines = _films(request), _lines(request)
 
     def at(speed: float) -> AtSpeed:
         if films is None:
@@ -137,7 +143,7 @@ def _at_speed(request: Request) -> Callable[[float], AtSpeed]:
                 raise
             words = f"{RPM.text(speed)}: dry and without damping, as the film table has no films there ({error})"
             return AtSpeed(request.force, problems=(words,))
-        return AtSpeed(request.force.with_films(at_speed))
+        return AtSpeed(request.force.with_films(at_speed), lines)
 
     return at
 

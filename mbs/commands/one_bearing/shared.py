@@ -14,7 +14,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.physics.designations.clearance import clearance_range
-from ehdmaps.physics.heat import ISOTHERMAL, heat_data
+from ehdmaps.physics.heat import ISOTHERMAL, heat_data, heat_in_force
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.surface import CrownedProfile, TabulatedProfile
@@ -457,13 +457,13 @@ def read_heat(chosen: Mapping[str, Any], oil: Lubricant | None, lack: str, probl
     problems : list of str
         List that takes what is wrong.
     """
-    physics = chosen.get("physics", ISOTHERMAL)
-    if "physics" in chosen and lack:
+    physics = chosen.get("physics")
+    if physics is not None and lack:
         problems.append(f"--physics: got {physics} {lack}")
-    if physics == ISOTHERMAL or lack or oil is None:
-        return False
-    try:
-        heat_data(oil, STEEL)
-    except InputError as error:
-        problems += [f"--physics: {problem}" for problem in error.problems]
-    return True
+    heat = not lack and heat_in_force(None if physics is None else physics != ISOTHERMAL, oil)
+    if heat and oil is not None:
+        try:
+            heat_data(oil, STEEL)
+        except InputError as error:
+            problems += [f"--physics: {problem}" for problem in error.problems]
+    return heat

@@ -68,7 +68,7 @@ static int bearing_at(const ehd_bearing *bearing, const ehd_law *law, ehd_balls 
     const ehd_ball_data data = {
         {bearing->axial, bearing->radial, bearing->arm, INNER_ARM, OUTER_ARM, bearing->most_travel, bearing->most_tilt},
         {still ? 0.0 : inner_speed, still ? 0.0 : outer_speed, still || !cage ? NAN : *cage,
-         EHD_BALL_DIAMETER / EHD_PITCH_DIAMETER, CENTRIFUGAL, GYROSCOPIC},
+         EHD_BALL_DIAMETER / EHD_PITCH_DIAMETER, CENTRIFUGAL, GYROSCOPIC, BALL_AXIS},
         cage_angle, rest, EHD_BALLS, bearing->cosine, bearing->sine, bearing->row[0], held, inner, outer};
     ehd_ball_start *start = (ehd_ball_start *)balls->start;
     ehd_ball_found found[EHD_BALLS];

@@ -35,6 +35,7 @@ def _private(force: BallForce) -> str:
         + define("OUTER_ARM", shape.outer_arm, "the same of the outer one [m]")
         + define("CENTRIFUGAL", drive.centrifugal, "centrifugal load of a ball over the square of its speed [kg m]")
         + define("GYROSCOPIC", drive.gyroscopic, "the same of the traction of its gyroscopic moment [kg m]")
+        + define("BALL_AXIS", int(drive.axis), f"axis of a ball: {geometry.hypothesis}")
         + define("AXIAL_PLAY", int(geometry.axial_play), "1: the clearance is axial, and shifts the rows")
         + "/* rows: way along x, place [m], shift of the inner groove [m], other contacts */\n"
         + "static const double row_of[EHD_BALLS / EHD_ROW_BALLS][4] = {"
@@ -62,7 +63,7 @@ BALLS = ExportKind(
         "differences.",
         "The balls stand where the spins bring them, with a cage in pure rolling at the nominal contact angle; the "
         "first one stands on the y axis at spins of zero. Their centrifugal load and gyroscopic moment are those of "
-        "balls that roll at both raceways, by the contact angles of the pose, and do not drill at the outer one.",
+        "balls that roll at both raceways, by the contact angles of the pose; BALL_AXIS says about which axis.",
     ),
     slow="Each ball is in balance at once and films follow at once: there are no states.",
     memory=(

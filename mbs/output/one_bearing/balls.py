@@ -51,11 +51,13 @@ def _largest(point: BallPoint, name: str) -> list[float]:
     return [float(side.max()) for side in values]
 
 
-_TRACTION = "largest traction that holds a gyroscopic moment, over the load at the outer raceway"
+_TRACTION = "largest traction that holds a gyroscopic moment, over the load at its raceway"
+_CONTROL = "Harris' criterion, Q_o a_o E_o cos(a_i - a_o) over Q_i a_i E_i: outer race control above 1"
 _SPEEDS = (
     Number("cage_speed", "rad/s", "speed of the cage, mean of the balls by their loads"),
     Number("centrifugal_load", "N", "largest centrifugal load of a ball"),
     Number("gyroscopic_traction", "1", _TRACTION),
+    Number("race_control", "1", _CONTROL),
 )
 _SPIN_WORDS = "largest drilling of the ring against a ball, about the normal"
 _SIDES = (
@@ -130,7 +132,9 @@ def _closing(point: BallPoint, _: Row) -> list[str]:
     """A line on the cage and the balls."""
     return [
         f"cage {RPM.text(point.cage_speed)}, centrifugal load of a ball up to {FORCE.text(point.centrifugal_load)}, "
-        f"gyroscopic traction up to {point.gyroscopic_traction:.2g} of the load at the outer raceway"
+        f"gyroscopic traction up to {point.gyroscopic_traction:.2g} of the load at a raceway",
+        f"balls turn by {point.force.geometry.hypothesis}; Harris' criterion {point.race_control:.3g} (outer race "
+        "control above 1, inner below)",
     ]
 
 

@@ -83,7 +83,7 @@ def _sources_of_lines(laws: ContactLaws) -> tuple[str, str]:
     source = by_formula.words if by_formula else "films from the film table"
     return (
         f"{source} at radius and speed of the middle of rollers, {films.oil.title}, "
-        f"{'' if by_formula else 'inlet heat, ' * films.conditions.inlet_heat}"
+        f"{'' if by_formula else films.conditions.heat_words + ', '}"
         f"{films.conditions.supply.label}, {surface_label(films.conditions.surface)}",
         ", ribs dry",
     )

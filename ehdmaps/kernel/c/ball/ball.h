@@ -11,6 +11,10 @@
 /* What ehd_ball_force found instead of an answer. */
 enum { EHD_BALL_NOT_FINITE = -1, EHD_BALL_TOO_FAR = -2, EHD_BALL_NO_BALANCE = -3 };
 
+/* Axis of a ball: without drilling at the outer or at the inner raceway, half way between the contacts, or that without
+ * a gyroscopic moment. */
+enum { EHD_AXIS_OUTER, EHD_AXIS_INNER, EHD_AXIS_BISECTOR, EHD_AXIS_NO_MOMENT };
+
 /* Lengths of a bearing. */
 typedef struct ehd_ball_shape {
     double axial, radial;          /* inner groove's centre against the outer one, rings in the middle [m] */
@@ -25,6 +29,7 @@ typedef struct ehd_ball_drive {
     double cage;                    /* at which a cage holds the balls [rad/s]; NaN for balls that roll */
     double ratio;                   /* diameter of a ball over the pitch diameter */
     double centrifugal, gyroscopic; /* centrifugal load over the square of the speed, and 2 J d_m/Dw^2 [kg m] */
+    double axis;                    /* about which a ball turns, EHD_AXIS_... */
 } ehd_ball_drive;
 
 /* Where a ball begins: its centre at the last call, d there [m], and S = dv/dd; all zero or NaN from nothing. */
@@ -43,7 +48,8 @@ typedef struct ehd_ball_found {
     double inner[2], outer[2];      /* directions e_i and e_o of the contacts: axial, radial */
     double place[2];                /* of the contacts on their tables */
     double speed;                   /* around the axis [rad/s] */
-    double centrifugal, traction;   /* F_c and t of the traction t sin(a_o) at the outer raceway [N] */
+    double centrifugal, traction;   /* F_c, and the traction at the outer raceway [N] */
+    double inner_traction;          /* that at the inner one [N] */
 } ehd_ball_found;
 
 /* A bearing at a time. */

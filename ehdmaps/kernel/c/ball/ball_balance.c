@@ -3,11 +3,13 @@
  *
  * With e_o = v/|v|, e_i = (d - v)/|d - v| the ball is in balance where
  *
- *     Q_i e_i - Q_o e_o + P = 0,    P = F_c (0, 1) + t sin(a_o) (-cos a_o, sin a_o),    a_o the angle of e_o.
+ *     Q_i e_i - Q_o e_o + P = 0,    P = F_c (0, 1) + t k (-cos a_o, sin a_o),    a_o the angle of e_o.
  *
- * F_c is its centrifugal load, t sin(a_o) the traction at the outer raceway that holds its gyroscopic moment: both by its
- * speed around the axis, at which it rolls at both raceways and does not drill at the outer one (outer race control). With
- * g = Dw/d_m and c = cos(a_i - a_o) that is w_c = (w_i (1 - g cos a_i) + w_o (c + g cos a_i))/(1 + c).
+ * F_c is its centrifugal load, t k the traction that holds its gyroscopic moment, at the outer raceway where the inner one
+ * has no share of it (ball_shared): both by its speed around the axis, at which it rolls at both raceways. Its own axis is
+ * a hypothesis. It does not drill at the outer raceway (outer race control) where, with g = Dw/d_m and
+ * c = cos(a_i - a_o), w_c = (w_i (1 - g cos a_i) + w_o (c + g cos a_i))/(1 + c) and k = sin a_o; of others see
+ * ball_turn_about.
  *
  * With K_i, K_o the stiffness of the contacts (their rotation included), L = K_i + dP/dd, M = K_i + K_o - dP/dv,
  * S = M^-1 L and S' = K_i M^-1 slow motion has
@@ -48,27 +50,71 @@ typedef struct ball_state {
     double qi, qo, ki, ko, at_i, at_o;     /* loads, stiffness, places on tables */
     double ix, ir, ox, orr;                /* e_i and e_o */
     double distance, reach;                /* of v from both groove centres [m] */
-    double speed, centrifugal, traction;   /* around the axis [rad/s], F_c and t [N] */
-    double px, pr, dx, dr;                 /* dP/dspeed [N s], dspeed/dd [rad/(s m)] */
+    double speed, centrifugal, traction;   /* around the axis [rad/s], F_c and T = t k [N] */
+    double by_i, by_o, share;              /* dT/da_i, dT/da_o [N]; part of T at the inner raceway */
+    double d00, d01, d10, d11;             /* dP/dd [N/m] */
 } ball_state;
 
-/* Speed of a ball around the axis [rad/s] by its contact angles, and its derivatives by both, by_i and by_o. */
-EHD_INLINE double ball_orbit(const ehd_ball_drive *of, double ix, double ir, double ox, double orr, double *by_i,
-                              double *by_o) {
-    *by_i = *by_o = 0.0;
-    if (of->cage == of->cage) return of->cage;
-    double c = ix * ox + ir * orr, s = ix * orr - ir * ox;
-    if (!(c > 0.0)) c = s = 0.0; /* no inner raceway is there that could drive it */
-    const double one = 1.0 / (1.0 + c), slow = of->outer - of->inner;
-    const double speed = of->inner + slow * (c + of->ratio * ir) * one;
-    *by_o = s * (of->outer - speed) * one;
-    *by_i = -*by_o - slow * of->ratio * ix * one;
-    return speed;
+/* A ball that turns: its speed around the axis [rad/s], k of its traction t k, and their derivatives by both angles. */
+typedef struct ball_turn {
+    double speed, by_i, by_o, k, k_i, k_o;
+} ball_turn;
+
+/* Part of the traction that the inner raceway takes of a ball without load, and its derivatives by both loads; it goes with
+ * the load: a ball that is thrown off the inner raceway is held by the outer one. */
+EHD_INLINE double ball_shared(const ehd_ball_drive *of, double qi, double qo, double *by_i, double *by_o) {
+    const double most_of = of->axis == EHD_AXIS_INNER ? 2.0 : of->axis == EHD_AXIS_BISECTOR ? 1.0 : 0.0;
+    const double one = most_of > 0.0 && qi > 0.0 ? 1.0 / (qi + qo) : 0.0;
+    *by_i = most_of * qo * one * one;
+    *by_o = -most_of * qi * one * one;
+    return most_of * qi * one;
 }
 
-/* F_c of a ball and t by its speed [N], and their derivatives by it [N s]; out (4,). The ball turns against the cage, and
- * its spin is turned by w_c: the gyroscopic moment is J w_c (w_c - w_o) (d_m/Dw) sin a_o. Traction of rings that turn
- * against each other would drive an idle ball out of its groove: t >= -F_c/2. */
+/* How a ball turns by its contact angles, outer race control. */
+EHD_INLINE ball_turn ball_turn_outer(const ehd_ball_drive *of, double ix, double ir, double ox, double orr) {
+    double c = ix * ox + ir * orr, s = ix * orr - ir * ox;
+    ball_turn r = {of->cage, 0.0, 0.0, ox, 0.0, orr};
+    if (of->cage == of->cage) return r;
+    if (!(c > 0.0)) c = s = 0.0; /* no inner raceway is there that could drive it */
+    const double one = 1.0 / (1.0 + c), slow = of->outer - of->inner;
+    r.speed = of->inner + slow * (c + of->ratio * ir) * one;
+    r.by_o = s * (of->outer - r.speed) * one;
+    r.by_i = -r.by_o - slow * of->ratio * ix * one;
+    return r;
+}
+
+/* The same about another axis n = (n_x, n_r), radial and axial: with p = 1 - g cos a_i, q = 1 + g cos a_o and
+ * v = e_i.n, y = e_o.n it is w_c = (w_i p y + w_o q v)/(q v + p y), and k = q n_x/y. */
+static ball_turn ball_turn_about(const ehd_ball_drive *of, double ix, double ir, double ox, double orr) {
+    const int inner = of->axis == EHD_AXIS_INNER;
+    const double g = of->ratio, p = 1.0 - g * ir, q = 1.0 + g * orr, p_i = g * ix, q_o = -g * ox;
+    const double nx = inner ? ix : ix + ox, nr = inner ? ir - g : ir + orr; /* by a_i: (ir, -ix) */
+    const double nx_o = inner ? 0.0 : orr, nr_o = inner ? 0.0 : -ox;
+    const double v = ix * nx + ir * nr, v_i = ir * nx - ix * nr, v_o = ix * nx_o + ir * nr_o; /* e_i.n_i = 0 */
+    const double y = ox * nx + orr * nr, y_i = ox * ir - orr * ix, y_o = orr * nx - ox * nr + ox * nx_o + orr * nr_o;
+    const double one = 1.0 / (q * v + p * y), moment = of->axis != EHD_AXIS_NO_MOMENT;
+    ball_turn r = {of->cage, 0.0, 0.0, 0.0, 0.0, 0.0};
+    if (!(of->cage == of->cage)) {
+        const double slow = of->outer - of->inner, part = q * v * one; /* of the outer ring */
+        r.speed = of->inner + slow * part;
+        r.by_i = slow * one * (q * v_i - part * (q * v_i + p_i * y + p * y_i));
+        r.by_o = slow * one * (q_o * v + q * v_o - part * (q_o * v + q * v_o + p * y_o));
+    }
+    r.k = moment * q * nx / y;
+    r.k_i = moment * q * ir / y - r.k * y_i / y;
+    r.k_o = moment * (q_o * nx + q * nx_o) / y - r.k * y_o / y;
+    return r;
+}
+
+EHD_INLINE ball_turn ball_turned(const ehd_ball_drive *of, double ix, double ir, double ox, double orr) {
+    /* a ball on the outer raceway alone is turned by that */
+    if (of->axis == EHD_AXIS_OUTER || !(ix * ox + ir * orr > 0.0)) return ball_turn_outer(of, ix, ir, ox, orr);
+    return ball_turn_about(of, ix, ir, ox, orr);
+}
+
+/* F_c of a ball and t of its traction t k by its speed [N], and their derivatives by it [N s]; out (4,). The ball turns
+ * against the cage, and its spin is turned by w_c: the gyroscopic moment is J w_c (w_c - w_o) (d_m/Dw) k. Traction of rings
+ * that turn against each other would drive an idle ball out of its groove: t >= -F_c/2. */
 EHD_INLINE void ball_loads(const ehd_ball_drive *of, double speed, double *out) {
     double traction = of->gyroscopic * speed * (speed - of->outer);
     double by_traction = of->gyroscopic * (2.0 * speed - of->outer);
@@ -84,7 +130,7 @@ EHD_INLINE void ball_loads(const ehd_ball_drive *of, double speed, double *out) 
 
 EHD_INLINE ball_state ball_state_at(const ball_given *of, double x, double r) {
     ball_state s;
-    double ix = of->dx - x, ir = of->dr - r, by_i, by_o, load[4];
+    double ix = of->dx - x, ir = of->dr - r, load[4];
     const double reach = sqrt(x * x + r * r), distance = most(sqrt(ix * ix + ir * ir), 1e-300);
     const ehd_pair_load outer =
         pair_carried_by(of->outer, of->outer_scale, of->outer_step, reach - of->outer_arm, of->held_outer);
@@ -95,27 +141,49 @@ EHD_INLINE ball_state ball_state_at(const ball_given *of, double x, double r) {
     ix *= one_i;
     ir *= one_i;
     const double to = qo * one_o, ti = qi * one_i;
-    s.speed = ball_orbit(&of->drive, ix, ir, ox, orr, &by_i, &by_o);
+    const ball_turn turn = ball_turned(&of->drive, ix, ir, ox, orr);
+    s.speed = turn.speed;
     ball_loads(&of->drive, s.speed, load);
-    const double centrifugal = load[0], traction = load[1];
-    s.px = -load[3] * ox * orr;
-    s.pr = load[2] + load[3] * ox * ox;
-    /* a_i and a_o follow d and v by (cos, -sin) over the distance */
-    s.dx = by_i * ir * one_i;
-    s.dr = -by_i * ix * one_i;
-    const double vx = by_o * orr * one_o - s.dx, vr = -by_o * ox * one_o - s.dr;
-    /* the traction turns with the angle a_o, whose derivative by the place is (cos, -sin)/reach */
-    const double turn_x = traction * (orr * orr - ox * ox) * one_o, turn_r = -2.0 * traction * ox * orr * one_o;
+    const double centrifugal = load[0], t = load[1], traction = t * turn.k;
+    double share_i, share_o;
+    s.share = ball_shared(&of->drive, qi, qo, &share_i, &share_o);
+    s.by_i = load[3] * turn.k * turn.by_i + t * turn.k_i;
+    s.by_o = load[3] * turn.k * turn.by_o + t * turn.k_o;
+    /* P = (0, F_c) + T u, u = (1 - share) (-cos a_o, sin a_o) + share (cos a_i, -sin a_i), by both angles */
+    const double held = 1.0 - s.share, ux = s.share * ir - held * orr, ur = held * ox - s.share * ix;
+    const double px_i = s.by_i * ux - s.share * traction * ix, px_o = s.by_o * ux + held * traction * ox;
+    const double pr_i = load[2] * turn.by_i + s.by_i * ur - s.share * traction * ir;
+    const double pr_o = load[2] * turn.by_o + s.by_o * ur + held * traction * orr;
+    /* a_i and a_o follow d - v and v by (cos, -sin) over the distance */
+    const double ax = ir * one_i, ar = -ix * one_i, bx = orr * one_o, br = -ox * one_o;
+    s.d00 = px_i * ax;
+    s.d01 = px_i * ar;
+    s.d10 = pr_i * ax;
+    s.d11 = pr_i * ar;
+    double e00 = px_o * bx - s.d00, e01 = px_o * br - s.d01, e10 = pr_o * bx - s.d10, e11 = pr_o * br - s.d11;
+    if (s.share > 0.0) { /* which follows the loads */
+        const double wx = traction * (ir + orr), wr = -traction * (ix + ox);
+        const double dx = share_i * ki * ix, dr = share_i * ki * ir;
+        const double vx = share_o * ko * ox - dx, vr = share_o * ko * orr - dr;
+        s.d00 += wx * dx;
+        s.d01 += wx * dr;
+        s.d10 += wr * dx;
+        s.d11 += wr * dr;
+        e00 += wx * vx;
+        e01 += wx * vr;
+        e10 += wr * vx;
+        e11 += wr * vr;
+    }
     const double mixed = (ko - to) * ox * orr + (ki - ti) * ix * ir;
     s.x = x;
     s.r = r;
-    s.fx = qi * ix - qo * ox - traction * ox * orr;
-    s.fr = qi * ir - qo * orr + centrifugal + traction * ox * ox;
+    s.fx = qi * ix - qo * ox + traction * ux;
+    s.fr = qi * ir - qo * orr + centrifugal + traction * ur;
     s.size = qi + qo + centrifugal;
-    s.m00 = (ko - to) * ox * ox + to + (ki - ti) * ix * ix + ti + turn_x * orr - s.px * vx;
-    s.m01 = mixed - turn_x * ox - s.px * vr;
-    s.m10 = mixed + turn_r * orr - s.pr * vx;
-    s.m11 = (ko - to) * orr * orr + to + (ki - ti) * ir * ir + ti - turn_r * ox - s.pr * vr;
+    s.m00 = (ko - to) * ox * ox + to + (ki - ti) * ix * ix + ti - e00;
+    s.m01 = mixed - e01;
+    s.m10 = mixed - e10;
+    s.m11 = (ko - to) * orr * orr + to + (ki - ti) * ir * ir + ti - e11;
     s.qi = qi;
     s.qo = qo;
     s.ki = ki;
@@ -282,20 +350,41 @@ static int ball_anew(const ball_given *of, const ehd_ball_start *start, ball_sta
     return ball_newton(of, s, BALL_LAST_STEPS);
 }
 
+/* Derivatives of the traction of the inner raceway, share T (cos a_i, -sin a_i), by v, and by d and v together. */
+static void ball_inner_slopes(const ball_given *of, const ball_state *s, double *by_v, double *by_both) {
+    double share_i, share_o;
+    ball_shared(&of->drive, s->qi, s->qo, &share_i, &share_o);
+    const double ux = s->ir, ur = -s->ix, T = s->traction, along = s->share * s->by_o / s->reach;
+    const double ax = s->ir / s->distance, ar = -s->ix / s->distance;
+    const double gx = s->share * (s->by_i * ux - T * s->ix), gr = s->share * (s->by_i * ur - T * s->ir);
+    const double i = T * share_i * s->ki, o = T * share_o * s->ko;
+    by_both[0] = ux * (along * s->orr + o * s->ox);
+    by_both[1] = ux * (o * s->orr - along * s->ox);
+    by_both[2] = ur * (along * s->orr + o * s->ox);
+    by_both[3] = ur * (o * s->orr - along * s->ox);
+    by_v[0] = by_both[0] - gx * ax - ux * i * s->ix;
+    by_v[1] = by_both[1] - gx * ar - ux * i * s->ir;
+    by_v[2] = by_both[2] - gr * ax - ur * i * s->ix;
+    by_v[3] = by_both[3] - gr * ar - ur * i * s->ir;
+}
+
 /* Force, stiffness and damping of a ball in balance, and where it begins the next time. */
 EHD_INLINE void ball_answer(const ball_given *of, const ball_state *s, ehd_ball_start *start, ehd_ball_found *out) {
     const double qi = s->qi, ki = s->ki, ix = s->ix, ir = s->ir, ox = s->ox, orr = s->orr, ti = qi / s->distance;
     const double k00 = (ki - ti) * ix * ix + ti, k01 = (ki - ti) * ix * ir, k11 = (ki - ti) * ir * ir + ti;
     const double m00 = s->m00, m01 = s->m01, m10 = s->m10, m11 = s->m11, determinant = m00 * m11 - m01 * m10;
-    const double l00 = k00 + s->px * s->dx, l01 = k01 + s->px * s->dr;
-    const double l10 = k01 + s->pr * s->dx, l11 = k11 + s->pr * s->dr;
+    const double l00 = k00 + s->d00, l01 = k01 + s->d01, l10 = k01 + s->d10, l11 = k11 + s->d11;
+    /* the traction of the inner ring by v, and by d and v together, [4] each */
+    double by_v[4] = {0.0, 0.0, 0.0, 0.0}, by_both[4] = {0.0, 0.0, 0.0, 0.0};
+    if (s->share > 0.0) ball_inner_slopes(of, s, by_v, by_both);
     start->centre[0] = s->x;
     start->centre[1] = s->r;
     start->groove[0] = of->dx;
     start->groove[1] = of->dr;
     for (int i = 0; i < 4; i++) start->share[i] = 0.0;
-    out->force[0] = qi * ix;
-    out->force[1] = qi * ir;
+    const double inner_traction = s->share * s->traction;
+    out->force[0] = qi * ix + inner_traction * ir;
+    out->force[1] = qi * ir - inner_traction * ix;
     out->load[0] = qi;
     out->load[1] = s->qo;
     out->angle[0] = out->angle[1] = 0.0;
@@ -309,7 +398,8 @@ EHD_INLINE void ball_answer(const ball_given *of, const ball_state *s, ehd_ball_
     out->place[1] = s->at_o;
     out->speed = s->speed;
     out->centrifugal = s->centrifugal;
-    out->traction = s->traction;
+    out->traction = (1.0 - s->share) * s->traction;
+    out->inner_traction = inner_traction;
     if (qi <= 0.0 || determinant == 0.0) {
         for (int i = 0; i < 4; i++) out->stiffness[i] = out->damping[i] = 0.0;
         return;
@@ -319,8 +409,9 @@ EHD_INLINE void ball_answer(const ball_given *of, const ball_state *s, ehd_ball_
     const double one = 1.0 / determinant, n00 = m11 * one, n01 = -m01 * one, n10 = -m10 * one, n11 = m00 * one;
     const double s00 = n00 * l00 + n01 * l10, s01 = n00 * l01 + n01 * l11;
     const double s10 = n10 * l00 + n11 * l10, s11 = n10 * l01 + n11 * l11;
-    const double p00 = k00 * n00 + k01 * n10, p01 = k00 * n01 + k01 * n11;
-    const double p10 = k01 * n00 + k11 * n10, p11 = k01 * n01 + k11 * n11;
+    const double g00 = k00 - by_v[0], g01 = k01 - by_v[1], g10 = k01 - by_v[2], g11 = k11 - by_v[3];
+    const double p00 = g00 * n00 + g01 * n10, p01 = g00 * n01 + g01 * n11;
+    const double p10 = g10 * n00 + g11 * n10, p11 = g10 * n01 + g11 * n11;
     start->share[0] = s00;
     start->share[1] = s01;
     start->share[2] = s10;
@@ -332,10 +423,10 @@ EHD_INLINE void ball_answer(const ball_given *of, const ball_state *s, ehd_ball_
     out->force[1] -= p10 * s->fx + p11 * s->fr;
     /* K_i (1 - S), without the difference of nearly equal numbers: S' (M - L) */
     const double b00 = m00 - l00, b01 = m01 - l01, b10 = m10 - l10, b11 = m11 - l11;
-    out->stiffness[0] = p00 * b00 + p01 * b10;
-    out->stiffness[1] = p00 * b01 + p01 * b11;
-    out->stiffness[2] = p10 * b00 + p11 * b10;
-    out->stiffness[3] = p10 * b01 + p11 * b11;
+    out->stiffness[0] = p00 * b00 + p01 * b10 + by_both[0];
+    out->stiffness[1] = p00 * b01 + p01 * b11 + by_both[1];
+    out->stiffness[2] = p10 * b00 + p11 * b10 + by_both[2];
+    out->stiffness[3] = p10 * b01 + p11 * b11 + by_both[3];
     /* dampers act along the contacts: their rates are u.(1 - S) and w.S, and their forces come back by S' */
     const double ux = ix - (ix * s00 + ir * s10), ur = ir - (ix * s01 + ir * s11);
     const double vx = ix - (p00 * ix + p01 * ir), vr = ir - (p10 * ix + p11 * ir);

@@ -108,7 +108,7 @@ double ehd_ball_speed_work(int64_t balls, const ehd_ball_found *found, double ar
     for (int64_t j = 0; j < balls; j++, last += 4) {
         const double reach = arm + found[j].approach[1], sine = found[j].outer[0], t = found[j].traction;
         const double x = reach * sine, r = reach * found[j].outer[1];
-        const double along = -t * sine * found[j].outer[1], outward = found[j].centrifugal + t * sine * sine;
+        const double along = -t * found[j].outer[1], outward = found[j].centrifugal + t * sine;
         work += 0.5 * ((along + last[2]) * (x - last[0]) + (outward + last[3]) * (r - last[1]));
         last[0] = x;
         last[1] = r;
