@@ -64,8 +64,16 @@ _PER_LINE = 12
 """Entries of a line of a deck; CalculiX takes up to 16."""
 
 _READ = """
-import meshio, numpy
-mesh = meshio.read(sys.argv[1])
+import meshio, numpy, pathlib, tempfile
+path = pathlib.Path(sys.argv[1])
+bulk = path.read_text(errors="replace") if path.suffix.lower() in (".bdf", ".nas", ".fem") else "BEGIN BULK"
+if "BEGIN BULK" in bulk.upper():
+    mesh = meshio.read(path)
+else:  # as Gmsh writes them
+    with tempfile.TemporaryDirectory() as folder:
+        whole = pathlib.Path(folder) / "whole.bdf"
+        whole.write_text("BEGIN BULK\\n" + bulk)
+        mesh = meshio.read(whole)
 points = numpy.asarray(mesh.points, dtype=float)
 found, groups, others = {}, {}, set()
 kinds = KINDS

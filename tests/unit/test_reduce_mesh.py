@@ -161,3 +161,13 @@ def test_all_kinds_of_elements_are_assembled(tmp_path) -> None:
     whole = np.sum(np.where(rows[:, 0] == rows[:, 1], 1.0, 2.0) * rows[:, 2]) / 3.0
     assert whole == pytest.approx(7850.0 * (0.5 + 1.0 / 6.0), rel=1e-9)
     assert len(dofs.read_text().split()) == 24
+
+
+@pytest.mark.parametrize("begin", ["BEGIN BULK\n", ""])
+def test_bulk_of_nastran_with_and_without_its_head(tmp_path, begin) -> None:
+    """Gmsh leaves out BEGIN BULK."""
+    path = tmp_path / "a.bdf"
+    grids = "".join(f"GRID,{k + 1},,{x},{y},{z}\n" for k, (x, y, z) in enumerate(np.vstack([np.zeros(3), np.eye(3)])))
+    path.write_text(f"{begin}{grids}CTETRA,1,1,1,2,3,4\nMAT1,1,2.1+5,,.3,7.85-9\nENDDATA\n")
+    mesh = read_solid(path, 1e-3)
+    assert mesh.count == 1 and mesh.positions.max() == pytest.approx(1e-3)
