@@ -79,7 +79,7 @@ slices = 3
 """
 NUP, NJ = (NU.replace("NU308", name) for name in ("NUP308", "NJ308"))
 BALL, ANGULAR, TAPERED = (f'bearing = "{name}"' for name in ("6208", "7208B", "32208"))
-ROWS, FOUR_POINT = 'bearing = "3208"', 'bearing = "QJ208"'
+ROWS, FOUR_POINT, SPHERE = (f'bearing = "{name}"' for name in ("3208", "QJ208", "1208"))
 TABLE = """
 kind = "table"
 speeds = ["0 rpm", "3000 rpm"]
@@ -145,6 +145,7 @@ KINDS = (
     Machine(
         "two rows, four-point", (("left", 'bearing = "3208"'), ("right", 'bearing = "QJ208"')), heavy=(1.0, -0.3, 0.0)
     ),
+    Machine("self-aligning", alike(SPHERE)),
     Machine("angular contact", preloaded(ANGULAR), heavy=(1.0, -0.3, 0.0)),
     Machine("tapered", preloaded(TAPERED), heavy=(0.25, -1.0, 0.0)),
     Machine("ribbed NUP", alike(NUP)),

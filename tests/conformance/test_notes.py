@@ -36,6 +36,7 @@ IDLE = {
     "deep groove": 'bearing = "6208"\ndiametral_clearance = "200 um"',
     "hybrid, thin section": 'bearing = "61912"\ndiametral_clearance = "200 um"',
     "two rows, four-point": 'bearing = "QJ208"\ndiametral_clearance = "200 um"',
+    "self-aligning": 'bearing = "1208"\ndiametral_clearance = "200 um"',
     "angular contact": 'bearing = "7208B"\naxial_offset = "-250 um"',
     "tapered": 'bearing = "32208"\naxial_offset = "-100 um"',
     "ribbed NUP": NUP.replace("10 um", "200 um") + '\naxial_clearance = "400 um"',

@@ -33,8 +33,9 @@ from tests.cases.fmu import Unit
 
 RPM = np.pi / 30.0
 WARM = 333.15
-EXACT = 1e-11
-"""Newton's method leaves 1e-13 of the forces on a ball; stiffness and damping follow by the change of the place."""
+EXACT, OF_SPHERES = 1e-11, 1e-10
+"""Newton's method leaves 1e-13 of the forces on a ball; stiffness and damping follow by the change of the place. Lengths
+of a sphere are a hundred times those of grooves, and so is their round-off."""
 
 TOLD = 3
 ABOVE_LOAD, OUTSIDE_SPEED, NOT_FINITE, TOO_FAR, BAD_ARGUMENT = 1, 2, 8, 32, 64
@@ -56,7 +57,7 @@ def films(geometry):
 def exported(tmp_path_factory):
     """Bearing, laws over the speed and compiled kernel: dry deep groove, balls about the bisector; angular, films."""
     folder, found = tmp_path_factory.mktemp("balls"), {}
-    for name, filmed in (("6208", False), ("7208B", True), ("3208", True)):
+    for name, filmed in (("6208", False), ("7208B", True), ("3208", True), ("1208", True)):
         geometry = dataclasses.replace(ball_estimate(name), hypothesis=HYPOTHESES[0 if filmed else 2])
         ends = (geometry.entrainment_speed(rpm * RPM) for rpm in (1000.0, 6000.0))
         dry = dry_law(geometry, damping_time=DAMPER)
@@ -67,18 +68,18 @@ def exported(tmp_path_factory):
     return found
 
 
-def assert_same(found, wanted, arm):
+def assert_same(found, wanted, arm, within=EXACT):
     """Force, K and C, with angles by the arm of the grooves, to a part of the largest term."""
     scale = np.array([1.0, 1.0, 1.0, arm, arm, arm])
     for rows, matrix, size in zip(
         (found[0], found[1:7], found[7:]), wanted, (scale, *2 * (np.outer(scale, scale),)), strict=True
     ):
         largest = np.max(np.abs(matrix / size))
-        assert np.max(np.abs((rows - matrix) / size)) <= EXACT * largest
+        assert np.max(np.abs((rows - matrix) / size)) <= within * largest
 
 
 @pytest.mark.parametrize("mirrored", [False, True])
-@pytest.mark.parametrize("name", ["6208", "7208B", "3208"])
+@pytest.mark.parametrize("name", ["6208", "7208B", "3208", "1208"])
 def test_kernel_is_that_of_python(exported, name, mirrored):
     """At random poses and velocities, with clearance and preload, at rest and fast, with rings against each other."""
     nominal, laws, kernel = exported[name]
@@ -102,7 +103,7 @@ def test_kernel_is_that_of_python(exported, name, mirrored):
                 wanted = force(
                     pose, 100.0 * velocity, cage_angle=angle, inner_speed=inner, outer_speed=outer, cage_speed=cage
                 )
-                assert_same(found, wanted, force.shape.arm)
+                assert_same(found, wanted, force.shape.arm or 0.02, OF_SPHERES if name == "1208" else EXACT)
                 loaded += bool(np.any(wanted[0]))
     assert loaded > 40
 

@@ -15,6 +15,7 @@ from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.point.ball_geometry import BallGeometry, BallRow
 from ehdmaps.physics.point.ball_ratings import ball_dynamic_rating, ball_static_rating
 from ehdmaps.physics.point.row_catalogue import PRELOADS, preload_of, row_designations
+from ehdmaps.physics.solids import STEEL
 from mbs import read_scene
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_mounting import mounted
@@ -62,6 +63,26 @@ def test_two_rows_are_two_bearings_at_their_places(arrangement, turned):
     assert np.max(np.abs(found[2])) > 0.0
 
 
+def test_a_sphere_lets_the_ring_tilt_and_carries_along_its_lines():
+    """No moment, no stiffness against tilts; forces by contacts along fixed lines from the middle, to the change of the
+    contact angle by the displacement, 10 um of 15 mm, and of the ball's own place: 1 %."""
+    geometry = ball_estimate("1208").with_clearance(0.0)
+    force = force_of(geometry)
+    pose = np.array([3e-6, 10e-6, -4e-6, 0.0, 0.01, -0.02])
+    found, stiffness, damping = force(pose)
+    assert not np.any(found[3:]) and not np.any(stiffness[3:]) and not np.any(stiffness[:, 3:])
+    assert not np.any(damping[3:])
+    np.testing.assert_array_equal(found, force(pose * [1, 1, 1, 0, 0, 0])[0])
+    inner, outer = geometry.contacts(STEEL)
+    soft, wanted = float(inner.approach(1.0)) + float(outer.approach(1.0)), np.zeros(3)
+    for way in (1.0, -1.0):
+        for angle in 2.0 * np.pi * np.arange(geometry.balls) / geometry.balls:
+            a = geometry.contact_angle
+            line = np.array([way * np.sin(a), np.cos(a) * np.cos(angle), np.cos(a) * np.sin(angle)])
+            wanted -= (max(float(line @ pose[:3]), 0.0) / soft) ** 1.5 * line
+    np.testing.assert_allclose(found[:3], wanted, atol=0.01 * np.max(np.abs(wanted)))
+
+
 def test_small_motions_know_the_rows():
     """The motions of groove centres, by which films with memory are condensed, give the stiffness of the force."""
     both = force_of(dataclasses.replace(ANGULAR, rows=(BallRow(1.0, -9e-3, 4e-6), BallRow(-1.0, 9e-3, 4e-6))))
@@ -100,7 +121,7 @@ def test_double_rows_of_the_catalogue_have_balls_as_they_are_made():
     entries = {f"{series}{row[0]:g}": row for series, rows in table("balls")["double_row"].items() for row in rows}
     near, ratios = [], []
     for name in row_designations():
-        if name[0] == "Q":
+        if name[0] != "3":
             continue
         found = ball_estimate(name)
         bore = {"00": 10, "01": 12, "02": 15, "03": 17}.get(name[2:], 5 * int(name[2:]))
@@ -119,14 +140,15 @@ def test_double_rows_of_the_catalogue_have_balls_as_they_are_made():
     [
         ("3208", "3208", 25.0, 0.0, 29.0), ("3208 ATN9/C3", "3208A", 30.0, 1.0, 40.0),
         ("5208", "3208", 25.0, 0.0, 29.0),
-        ("3208-B-TVH", "3208B", 25.0, 0.0, 29.0), ("QJ 308 N2MA", "QJ308", 35.0, 42.0, 106.0),
+        ("1208 EKTN9/C3", "1208", 8.34, 13.0, 40.0), ("3208-B-TVH", "3208B", 25.0, 0.0, 29.0),
+        ("QJ 308 N2MA", "QJ308", 35.0, 42.0, 106.0),
     ],
 )  # fmt: skip
 def test_names_of_makers(typed, name, angle, least, largest):
     found = ball_estimate(typed)
-    assert (found.name, math.degrees(found.contact_angle)) == (name, pytest.approx(angle))
+    assert (found.name, math.degrees(found.contact_angle)) == (name, pytest.approx(angle, abs=0.01))
     assert np.array(found.clearance_range.reach) == pytest.approx([1e-6 * least, 1e-6 * largest])
-    assert "of SKF, axial" in found.clearance_range.words
+    assert name == "1208" or "of SKF, axial" in found.clearance_range.words
 
 
 @pytest.mark.parametrize("typed", ["3308 DMA", "3299", "QJ299", "3208 A C5"])

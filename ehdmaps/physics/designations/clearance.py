@@ -30,6 +30,7 @@ from ehdmaps.physics.designations.reader import (
     DOUBLE_ROW,
     FOUR_POINT,
     NEEDLE,
+    SELF_ALIGNING,
     TAPERED,
     Designation,
     read_designation,
@@ -58,6 +59,9 @@ _SHAFTS = (
 )
 _AXIAL = {DOUBLE_ROW: ("double_row", 20e-6), FOUR_POINT: ("four_point", 14e-6)}
 """Tables of axial clearances, and the most that fits and warmth take of them [m]."""
+
+_OWN = {**_AXIAL, SELF_ALIGNING: ("self_aligning", 10e-6)}
+"""The same, and of kinds that have a radial one by a table of their own."""
 
 _MOUNTED = {
     ANGULAR: "the play of angular contact bearings is set when they are mounted",
@@ -262,8 +266,8 @@ def shaft_range(kind: str, raceway: float) -> ClearanceRange | None:
     return None
 
 
-def axial_range(found: Designation, bore: float) -> ClearanceRange | None:
-    """Axial clearance of a bearing of two rows by its designation; None for bores that have no classes.
+def own_range(found: Designation, bore: float) -> ClearanceRange | None:
+    """Clearance of a bearing of two rows by its designation, mostly axial; None for bores that have no classes.
 
     A radial fit of the size that deep groove bearings are given takes the cotangent of the contact angle of it.
 
@@ -279,7 +283,7 @@ def axial_range(found: Designation, bore: float) -> ClearanceRange | None:
     InputError
         For a class that its table does not have.
     """
-    key, taken = _AXIAL[found.kind]
+    key, taken = _OWN[found.kind]
     name = found.clearance or NORMAL
     for largest_bore, *limits in table("clearance")[key]:
         if bore <= 1e-3 * largest_bore * (1.0 + 1e-9):
@@ -291,7 +295,7 @@ def axial_range(found: Designation, bore: float) -> ClearanceRange | None:
                 )
             place = 2 * names.index(name)
             least, most = limits[place] / 1e6, limits[place + 1] / 1e6
-            return ClearanceRange(name, least, most, taken, bool(found.clearance), axial="SKF")
+            return ClearanceRange(name, least, most, taken, bool(found.clearance), axial="SKF" * (found.kind in _AXIAL))
     return None
 
 

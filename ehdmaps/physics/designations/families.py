@@ -10,8 +10,8 @@ from ehdmaps.physics.designations.reader import BALLS, ROLLERS, TAPERED, plain_n
 
 SERVED = (
     "deep groove balls 618, 619, 160, 60, 62, 63, 64; angular contact balls 718, 719, 70, 72, 73, two rows 32, 33, "
-    "four-point QJ; cylindrical rollers N, NU, NJ, NUP of 10, 2, 22, 3, 23, NCF of 18, 22, 29, 30; needles K, NA49; "
-    "tapered rollers 302, 303, 313, 320, 322, 323"
+    "four-point QJ, self-aligning 12, 13, 22, 23; cylindrical rollers N, NU, NJ, NUP of 10, 2, 22, 3, 23, NCF of 18, "
+    "22, 29, 30; needles K, NA49; tapered rollers 302, 303, 313, 320, 322, 323"
 )
 """Kinds and series that are served, in words."""
 
@@ -24,8 +24,7 @@ _FAMILIES = tuple(
         (r"(?:213|222|223|230|231|232|233|238|239|240|241|BS2)[ -]?\d\d", "spherical roller bearing"),
         (r"(?:292|293|294)[ -]?\d\d", "spherical roller thrust bearing"),
         (r"C[ -]?(?:22|23|30|31|32|39|40|41|49|50|59|60|69)[ -]?\d\d", "toroidal roller bearing"),
-        (r"(?:12|13|22|23|112|113)[ -]?\d\d", "self-aligning ball bearing"),
-        (r"1(?:08|26|27|29|35)", "self-aligning ball bearing"),
+        (r"(?:112|113)[ -]?\d\d|1(?:08|26|27|29|35)", "self-aligning ball bearing of another series"),
         (r"(?:511|512|513|514|522|523|524|532|533|534)[ -]?\d\d", "thrust ball bearing"),
         (r"(?:811|812|893|894|874)[ -]?\d\d", "cylindrical roller thrust bearing"),
         (r"(?:AXK|AXW|AS|LS|AXZ) ?\d{4,}", "needle roller thrust bearing"),

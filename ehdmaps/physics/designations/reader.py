@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 from ehdmaps.physics.designations.affixes import CLEARANCE, HYBRID, SET, Affix, prefix, suffixes
 
-CYLINDRICAL, NEEDLE, NEEDLE_CAGE, DEEP_GROOVE, ANGULAR, TAPERED, DOUBLE_ROW, FOUR_POINT = (
+CYLINDRICAL, NEEDLE, NEEDLE_CAGE, DEEP_GROOVE, ANGULAR, TAPERED, DOUBLE_ROW, FOUR_POINT, SELF_ALIGNING = (
     "cylindrical roller bearing",
     "needle roller bearing",
     "needle cage",
@@ -23,8 +23,9 @@ CYLINDRICAL, NEEDLE, NEEDLE_CAGE, DEEP_GROOVE, ANGULAR, TAPERED, DOUBLE_ROW, FOU
     "tapered roller bearing",
     "double row angular contact ball bearing",
     "four-point contact ball bearing",
+    "self-aligning ball bearing",
 )
-OF_ROWS = (DOUBLE_ROW, FOUR_POINT)
+OF_ROWS = (DOUBLE_ROW, FOUR_POINT, SELF_ALIGNING)
 BALLS, ROLLERS, NEEDLES = (DEEP_GROOVE, ANGULAR, *OF_ROWS), (CYLINDRICAL, NEEDLE, NEEDLE_CAGE), (NEEDLE, NEEDLE_CAGE)
 
 
@@ -44,6 +45,7 @@ _KINDS = (
     _Kind(ANGULAR, r"(718|719|7[02389])[ -]?(\d\d)[ .-]?(A5|AC|C|B|E)"),
     _Kind(DOUBLE_ROW, r"(32|33|52|53)[ -]?(\d\d)[ -]?(A|B)?"),
     _Kind(FOUR_POINT, r"(QJ)[ -]?(10|2|3)[ -]?(\d\d)"),
+    _Kind(SELF_ALIGNING, r"(12|13|22|23)[ -]?(\d\d)"),
     _Kind(TAPERED, r"(302|303|313|320|322|323)[ -]?(\d\d)(?:[ -]?X)?"),
 )
 _PATTERNS = tuple((row.kind, re.compile(rf"(.*?){row.base}(?![0-9])(.*)")) for row in _KINDS)

@@ -36,6 +36,8 @@ LARGEST_ANGLE = math.radians(60.0)
 """Largest nominal contact angle [rad]."""
 
 _CONFORMITIES = (0.5, 1.0)
+_SPHERE = 20.0
+"""Largest radius of a sphere over the ball diameter."""
 
 
 class BallRow(NamedTuple):
@@ -72,7 +74,7 @@ class BallGeometry(Named):
     balls : int
         Number Z of balls of a row.
     inner_conformity, outer_conformity : float
-        Radius of each groove over the ball diameter, f, 0.5 < f <= 1.
+        Radius of each groove over the ball diameter, f, 0.5 < f <= 1; of an outer raceway that is a sphere above 1.
     contact_angle : float
         Nominal contact angle alpha [rad], 0 for deep groove bearings. Positive: an axial force on the inner ring in +x
         is carried; negative: one in -x. At most 60 degrees either way.
@@ -177,13 +179,15 @@ class BallGeometry(Named):
     @property
     def ball_rows(self) -> int:
         """Number of rows of balls: those of a four-point contact bearing are at one place, and one row."""
-        return len({row.place for row in self.rows})
+        return len(self.rows) if self.spherical else len({row.place for row in self.rows})
 
     @property
     def row_words(self) -> str:
         """Its rows in words; empty for one."""
         if self.rows == ONE_ROW:
             return ""
+        if self.spherical:
+            return f"{len(self.rows)} rows on a sphere, free to tilt"
         if self.ball_rows == 1:
             return "two arcs on each raceway: contacts that carry either way are told as balls of their own"
         ways = "".join("+" if row.way > 0.0 else "-" for row in self.rows)
@@ -216,7 +220,22 @@ class BallGeometry(Named):
     @property
     def axial_play(self) -> bool:
         """Tell whether its clearance is axial: rows that carry either way have one by where their grooves stand."""
-        return self.contact_angle != 0.0 and len({row.way for row in self.rows}) > 1
+        return self.contact_angle != 0.0 and len({row.way for row in self.rows}) > 1 and not self.spherical
+
+    @property
+    def spherical(self) -> bool:
+        """Tell whether its outer raceway is a sphere about its middle."""
+        return self.outer_conformity > _CONFORMITIES[1]
+
+    @property
+    def tilt_arm(self) -> float:
+        """Arm by which tilts move the inner groove's centre along the axis: none about the middle of a sphere [m]."""
+        return 0.0 if self.spherical else self.inner_groove_radius
+
+    @property
+    def most_travel(self) -> float:
+        """Largest way of the inner ring that is no mistake [m]."""
+        return min(self.groove_distance, 0.05 * self.ball_diameter) if self.spherical else self.groove_distance
 
     @property
     def shifted_rows(self) -> tuple[BallRow, ...]:
@@ -309,7 +328,7 @@ def _problems(geometry: BallGeometry) -> list[str]:
         ("ball_diameter", "m", 0.0, math.inf, "> 0"),
         ("pitch_diameter", "m", 0.0, math.inf, "> 0"),
         ("inner_conformity", "", *_CONFORMITIES, "above 0.5 and at most 1; it is radius over ball diameter"),
-        ("outer_conformity", "", *_CONFORMITIES, "above 0.5 and at most 1; it is radius over ball diameter"),
+        ("outer_conformity", "", 0.5, _SPHERE, "above 0.5 and at most 1; it is radius over ball diameter"),
         ("contact_angle", "rad", -math.inf, LARGEST_ANGLE, "from -60 to 60 deg"),
         ("clearance", "m", -math.inf, math.inf, ""),
     )

@@ -10,13 +10,18 @@ the other one, as long as contact angles hardly move. It has its mass where its 
 are those of the deep groove bearing of the same section; the static rating, 5 f0 Z Dw^2 sin(alpha) by the pressure of
 radial bearings, gives whole numbers of them within 0.3 to 130 mm.
 
-Their clearance is axial. It takes no part of the radial distance of grooves, but shifts the rows.
+Self-aligning bearings have two rows on one sphere about the middle of the bearing: tilts of the inner ring turn it with
+its balls, and nothing presses more. Their contact angle is that of the factor e = 1.5 tan(alpha). Both ratings
+tell their balls, the static one by 4600 MPa. ISO 281 reduces the dynamic one by a factor that is taken as that of other
+bearings, 0.95: with 0.90 and 1.0 they would have a tenth fewer and more, at equal Z Dw^2.
+
+The clearance of the others is axial. It takes no part of the radial distance of grooves, but shifts the rows.
 
 References
 ----------
 Dimensions, ratings, pressure centres: NSK, Rolling Bearings, catalogue E1102e (52, 53; QJ2, QJ3, QJ10). Axial
-clearances C2 to C4: SKF, Rolling bearings (general catalogue, edition in Russian), tables of 32 A, 33 A, and QJ.
-ISO 76, ISO 281.
+clearances C2 to C4: SKF, Rolling bearings (general catalogue, edition in Russian), tables of 32 A, 33 A, QJ, and of
+self-aligning bearings. ISO 76, ISO 281.
 """
 
 from __future__ import annotations
@@ -28,9 +33,9 @@ from collections.abc import Callable
 from scipy.optimize import brentq
 
 from ehdmaps.errors import InputError, short
-from ehdmaps.physics.designations.clearance import axial_range, refuse_affixes
+from ehdmaps.physics.designations.clearance import own_range, refuse_affixes
 from ehdmaps.physics.designations.families import not_known
-from ehdmaps.physics.designations.reader import DOUBLE_ROW, Designation, bore_code, table
+from ehdmaps.physics.designations.reader import DOUBLE_ROW, FOUR_POINT, Designation, bore_code, table
 from ehdmaps.physics.point.ball_geometry import BallGeometry, BallRow
 from ehdmaps.physics.point.ball_ratings import (
     INNER_CONFORMITY,
@@ -55,6 +60,14 @@ PRELOADS = ("EL", "L", "M", "H")
 
 DOUBLE_ANGLES = {"": 25.0, "B": 25.0, "A": 30.0}
 """Contact angles of double row bearings by their suffix [deg]: NSK's 52, 53, and B of Schaeffler; A of SKF."""
+
+SPHERE_CONFORMITY, SPHERE_PRESSURE = 0.53, 4.6e9
+"""Inner groove radius over the ball diameter with which ISO 76 rates self-aligning bearings, and its pressure [Pa]."""
+
+_SPHERE_ERRORS = (
+    "contact angle to 0.5 deg, pitch diameter to 2 %, ball diameter 10 %, inner groove radius 0.52 to 0.55 of it, "
+    "number of balls +-3"
+)
 
 _ERRORS = (
     "contact angle to {} deg, pitch diameter to 2 %, ball diameter {} %, groove radii 0.515 to 0.53 of it (axial K "
@@ -97,13 +110,17 @@ def row_estimate(
     refuse_affixes(designation, found)
     if found.matched:
         return _matched_set(designation, found, estimate(found.single), width(found.single))
-    bearing = _double_row(found) if found.kind == DOUBLE_ROW else _four_point(found, estimate)
+    if found.kind == FOUR_POINT:
+        bearing = _four_point(found, estimate)
+    else:
+        bearing = _double_row(found) if found.kind == DOUBLE_ROW else _self_aligning(found)
     if bearing is None:
         raise not_known(
             designation,
             "ball bearing",
             row_designations(),
-            "32, 33 with bores of 10 to 85 and 15 to 70 mm, QJ2, QJ3 with 30 to 200 mm, QJ10 with 80 to 200 mm",
+            "32, 33 with bores of 10 to 85 and 15 to 70 mm, 12, 13, 22, 23 with 20 to 110 mm as far as NSK makes them, "
+            "QJ2, QJ3 with 30 to 200 mm, QJ10 with 80 to 200 mm",
         )
     return bearing
 
@@ -214,12 +231,42 @@ def preload_of(geometry: BallGeometry) -> float:
     return math.fsum(row_force(geometry, row.shift + x) for row in rows if row.way > 0.0)
 
 
+def _self_aligning(found: Designation) -> BallGeometry | None:
+    """Two rows on one sphere: balls by the pressure of the static rating, as many as the dynamic one takes."""
+    series, code = found.parts
+    row = _entry("self_aligning", series, code)
+    if row is None:
+        return None
+    bore, outside, _, dynamic, static, factor = row
+    pitch, angle = 0.5 * (bore + outside) * _MM, math.atan(factor / 1.5)
+
+    def made(balls: int, diameter: float) -> BallGeometry:
+        sphere = 0.5 * (1.0 + pitch / (diameter * math.cos(angle)))
+        rows = BallRow(1.0), BallRow(-1.0)
+        return BallGeometry(found.name, diameter, pitch, balls, SPHERE_CONFORMITY, sphere, angle, rows=rows)
+
+    def left(diameter: float, balls: int) -> float:
+        loads = [(SPHERE_PRESSURE / float(one.max_pressure(1.0))) ** 3 for one in made(3, diameter).contacts(STEEL)]
+        return 0.4 * balls * math.cos(angle) * min(loads) - static
+
+    tried = []
+    for balls in range(8, 30):
+        ends = 0.05 * (outside - bore) * _MM, 0.85 * pitch / balls * math.pi
+        if left(ends[0], balls) < 0.0 < left(ends[1], balls):
+            one = made(balls, float(brentq(left, *ends, args=(balls,))))
+            tried.append((abs(math.log(ball_dynamic_rating(one) / dynamic)), balls, one))
+    if not tried:
+        return None
+    words = f"inner geometry estimated from catalogue dimensions and NSK's ratings (ISO 76, ISO 281): {_SPHERE_ERRORS}"
+    return min(tried)[2].known({}, words).delivered(own_range(found, bore * _MM))
+
+
 def row_designations() -> tuple[str, ...]:
     """Designations that `row_estimate` knows."""
     rows = table("balls")
     return tuple(
         f"{prefix}{series}{bore_code(row[0])}"
-        for prefix, tables in (("", rows["double_row"]), ("QJ", rows["four_point"]))
+        for prefix, tables in (("", rows["double_row"]), ("QJ", rows["four_point"]), ("", rows["self_aligning"]))
         for series, entries in tables.items()
         for row in entries
     )
@@ -255,9 +302,7 @@ def _double_row(found: Designation) -> BallGeometry | None:
         return None
     words = "inner geometry estimated from catalogue dimensions and NSK's ratings (ISO 76, ISO 281): "
     angle = math.radians(DOUBLE_ANGLES[suffix])
-    return (
-        best[1].known({"contact_angle": angle}, words + _ERRORS.format(2, 4)).delivered(axial_range(found, bore * _MM))
-    )
+    return best[1].known({"contact_angle": angle}, words + _ERRORS.format(2, 4)).delivered(own_range(found, bore * _MM))
 
 
 def _four_point(found: Designation, estimate: Estimate) -> BallGeometry | None:
@@ -282,4 +327,4 @@ def _four_point(found: Designation, estimate: Estimate) -> BallGeometry | None:
         angle,
         estimated=words + _ERRORS.format(2, 8),
         rows=(BallRow(1.0), BallRow(-1.0)),
-    ).delivered(axial_range(found, bore * _MM))
+    ).delivered(own_range(found, bore * _MM))

@@ -55,6 +55,9 @@ from mbs.model.findings import CARRIES
 if TYPE_CHECKING:
     from mbs.life import ReferenceLife
 
+SPHERE_TILT = 0.1
+"""Largest accepted tilt of a bearing whose outer raceway is a sphere [rad]; makers allow half of it."""
+
 NEGLIGIBLE = 1e-11
 """Approach [m] of a dry contact under a centrifugal load that is left out: less than a micronewton."""
 
@@ -142,14 +145,15 @@ class BallForce(LocatingForce):
     def __init__(self, geometry: BallGeometry, law: BallLaw, material: Material = STEEL) -> None:
         self.geometry, self.law, self.dry_law, self.material = geometry, law, law, material
         distance, angle = geometry.groove_distance, geometry.contact_angle
+        places = [abs(row.place) for row in geometry.rows]
         self._shape = BallShape(
             axial=distance * math.sin(angle),
             radial=geometry.radial_distance,
-            arm=geometry.inner_groove_radius,
+            arm=geometry.tilt_arm,
             inner_arm=(geometry.inner_conformity - 0.5) * geometry.ball_diameter,
             outer_arm=(geometry.outer_conformity - 0.5) * geometry.ball_diameter,
-            most_travel=distance,
-            most_tilt=distance / max(geometry.inner_groove_radius, *(abs(row.place) for row in geometry.rows)),
+            most_travel=geometry.most_travel,
+            most_tilt=SPHERE_TILT if geometry.spherical else distance / max(geometry.inner_groove_radius, *places),
         )
         mass, diameter, pitch = geometry.ball_mass(material), geometry.ball_diameter, geometry.pitch_diameter
         axis = float(HYPOTHESES.index(geometry.hypothesis))

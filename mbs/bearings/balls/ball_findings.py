@@ -43,7 +43,10 @@ def ball_gauge(force: BallForce, balls: BallLoads) -> Gauge:
         _thrown(balls),
     ]
     pressure = np.array([float(np.max(side)) for side in ball_pressures(force, balls)])
-    return Gauge("ball", balls.load, pressure, POINT_LIMIT, tuple(one for one in own if one is not None))
+    load = balls.load
+    if force.geometry.spherical:  # idle balls slide along the sphere, until the inner groove holds them
+        load = np.where(load[0] <= balls.centrifugal, 0.0, load)
+    return Gauge("ball", load, pressure, POINT_LIMIT, tuple(one for one in own if one is not None))
 
 
 def ball_pressures(force: BallForce, balls: BallLoads) -> FloatArray:
@@ -81,6 +84,8 @@ def _height(geometry: BallGeometry) -> float:
 
 def _end(geometry: BallGeometry, side: int) -> float:
     """Angle along its arc at which a groove ends [rad]."""
+    if side == 1 and geometry.spherical:  # which ends nowhere near
+        return math.asin(0.5 / geometry.outer_conformity)
     return math.acos(1.0 - _height(geometry) / (geometry.inner_conformity, geometry.outer_conformity)[side])
 
 
@@ -90,7 +95,7 @@ def _shoulder(force: BallForce, balls: BallLoads) -> Finding | None:
     height, half = _height(geometry), 0.5 * geometry.ball_diameter
     worst, place = 1.0, ""
     for side, contact in enumerate(geometry.contacts(force.material)):
-        end = _end(geometry, side)
+        end = 0.5 * math.pi if side == 1 and geometry.spherical else _end(geometry, side)
         carries = balls.load[side] > CARRIES * balls.load[side].max()
         _, across = contact.semi_axes(balls.load[side])
         reach = np.abs(balls.contact_angle[side]) + np.arcsin(np.minimum(across / half, 1.0))

@@ -47,7 +47,7 @@ class BallPoint(LocatingPoint):
     def advice(force: BallForce, load: FloatArray, speeds: tuple[float, float]) -> str:
         """Advice on the axial load, see `LocatingPoint.advice`."""
         angle = force.geometry.contact_angle
-        if not angle:
+        if not angle or len({row.way for row in force.geometry.rows}) > 1:
             return ""
         return (
             f"; an angular contact bearing falls apart without a {'positive' if angle > 0.0 else 'negative'} axial "

@@ -18,8 +18,9 @@ int ehd_bearing_make(ehd_bearing *bearing, double clearance, int mirrored) {
     bearing->radial = apart - 0.5 * (clearance - axial);
     /* the inner groove's centre at the free contact angle */
     bearing->arm = 0.5 * EHD_PITCH_DIAMETER + INNER_ARM * least(bearing->radial / GROOVE_DISTANCE, 1.0);
-    bearing->most_travel = GROOVE_DISTANCE;
-    bearing->most_tilt = GROOVE_DISTANCE / bearing->arm;
+    bearing->most_travel = MOST_TRAVEL;
+    bearing->most_tilt = SPHERE ? 0.1 : GROOVE_DISTANCE / bearing->arm;
+    if (SPHERE) bearing->arm = 0.0;
     for (int j = 0; j < EHD_BALLS; j++) {
         const double *row = row_of[j / EHD_ROW_BALLS], turned = mirrored ? -1.0 : 1.0;
         bearing->cosine[j] = cos(two_pi * (j % EHD_ROW_BALLS) / EHD_ROW_BALLS);

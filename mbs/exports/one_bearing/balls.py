@@ -36,6 +36,8 @@ def _private(force: BallForce) -> str:
         + define("CENTRIFUGAL", drive.centrifugal, "centrifugal load of a ball over the square of its speed [kg m]")
         + define("GYROSCOPIC", drive.gyroscopic, "the same of the traction of its gyroscopic moment [kg m]")
         + define("BALL_AXIS", int(drive.axis), f"axis of a ball: {geometry.hypothesis}")
+        + define("SPHERE", int(geometry.spherical), "1: the outer raceway is a sphere about the middle, tilts are free")
+        + define("MOST_TRAVEL", geometry.most_travel, "largest accepted displacement [m]")
         + define("AXIAL_PLAY", int(geometry.axial_play), "1: the clearance is axial, and shifts the rows")
         + "/* rows: way along x, place [m], shift of the inner groove [m], other contacts */\n"
         + "static const double row_of[EHD_BALLS / EHD_ROW_BALLS][4] = {"

@@ -48,7 +48,7 @@ def _ball(section: Table, name: str) -> BallSpec | None:
     if not keys:
         clearance = section.quantity("diametral_clearance", "m", -WIDEST, WIDEST, MICROMETRE)
     if geometry is not None:
-        if turned and (geometry.contact_angle == 0.0 or geometry.axial_play):
+        if turned and (geometry.contact_angle == 0.0 or geometry.axial_play or geometry.spherical):
             section.note("mirrored", f"got true for {geometry.name}, which is alike both ways; delete it")
         way = -1.0 if turned else 1.0
         try:
