@@ -34,8 +34,8 @@ from tests.cases.fmu import Unit
 RPM = np.pi / 30.0
 WARM = 333.15
 EXACT, OF_SPHERES = 1e-11, 1e-10
-"""Newton's method leaves 1e-13 of the forces on a ball; stiffness and damping follow by the change of the place. Lengths
-of a sphere are a hundred times those of grooves, and so is their round-off."""
+"""Newton's method leaves 1e-13 of the forces on a ball; stiffness and damping follow by the change of the place.
+Lengths of a sphere are a hundred times those of grooves, and so is their round-off."""
 
 TOLD = 3
 ABOVE_LOAD, OUTSIDE_SPEED, NOT_FINITE, TOO_FAR, BAD_ARGUMENT = 1, 2, 8, 32, 64
