@@ -161,15 +161,6 @@ def solved_map() -> str:
     return made_map("solved", f'{FINE}films = "solved"\n')
 
 
-@pytest.fixture(scope="module")
-def coarse_laws() -> Iterator[None]:
-    """Tables of laws are coarse: for tests of a module whose claims hold with every table."""
-    from tests.cases.coarse import coarse_tables
-
-    with coarse_tables():
-        yield
-
-
 @pytest.fixture
 def fine_laws() -> Iterator[None]:
     """Tables of laws are as users have them, though those of the folder are coarse."""

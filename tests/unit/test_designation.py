@@ -28,8 +28,6 @@ from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
 from ehdmaps.physics.solids import STEEL
 from mbs.cli import main as mbs_main
 
-pytestmark = pytest.mark.usefixtures("coarse_laws")
-
 SMALL = """
 [bearing]
 name = "NJ 2207 ECP"

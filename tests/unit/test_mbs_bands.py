@@ -33,8 +33,6 @@ from mbs.scene.reader import read_scene
 from tests.cases.laws import dataset_of
 from tests.unit.test_law_errors import CHECKED
 
-pytestmark = pytest.mark.usefixtures("coarse_laws")
-
 SPEED = 100.0
 """[rad/s]; with the bearings of both scenes within the maps below."""
 

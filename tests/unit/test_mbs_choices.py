@@ -29,8 +29,6 @@ from mbs.scene.reader import parse_scene, read_scene
 from mbs.scene.subject import LawChoice, Subject, named_law
 from tests.cases.laws import dataset_of
 
-pytestmark = pytest.mark.usefixtures("coarse_laws")
-
 TEXT = (resources.files("mbs") / "systems" / "nu308_rigid.toml").read_text(encoding="utf-8").replace("= 41", "= 5")
 
 

@@ -20,8 +20,6 @@ from mbs.settings import RunUp, Settings
 from tests.cases.bearings import bearing, map_law
 from tests.cases.masses import MASSES
 
-pytestmark = pytest.mark.usefixtures("coarse_laws")
-
 WARM = 330.0
 DELTA = np.linspace(-2e-6, 6e-6, 9)
 POSES = ([0.0, 9e-6, 4e-6, 0.0, 1e-4, 0.0], [0.0, -3e-6, 1.2e-5, 0.0, 0.0, -2e-4])
