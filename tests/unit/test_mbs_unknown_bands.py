@@ -163,7 +163,7 @@ def test_a_look_is_the_machine_made_anew(rigid):
 @pytest.fixture
 def few_unknowns(monkeypatch):
     """Clearances and temperature alone are open: other looks cost seconds."""
-    for name in ("_alpha", "profiles", "_cages", "_supplies"):
+    for name in ("_alpha", "profiles", "_cages", "other_supplies"):
         monkeypatch.setattr(held_open, name, lambda *given: ())
 
 
