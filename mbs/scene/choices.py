@@ -255,7 +255,7 @@ def _with_physics(subject: Subject, physics: str) -> Subject:
         return subject
     heat = physics != _physics()[0]
     from_files = [] if maps is None else [emap for emap in maps.maps if not emap.from_table]
-    if any(emap.inlet_heat != heat for emap in from_files):
+    if any(emap.physics != physics for emap in from_files):
         raise InputError(
             f"got {physics} with a map, which has the physics that it was made with; allowed: films of the film table; "
             "make the map of a job with this physics in [solver]"

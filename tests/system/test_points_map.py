@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 import math
 
 import numpy as np
@@ -111,6 +112,20 @@ def test_what_it_does_not_take_is_refused(made, tmp_path, monkeypatch, capsys, a
     status, _, err = run(capsys, *(made if argument == "MADE" else argument for argument in arguments))
     assert status == 2 and words in err
     assert not list(tmp_path.iterdir())
+
+
+def test_heat_in_the_inlet_is_asked_for_behind_the_oil(tmp_path):
+    """Numbers are those of heated films of the table; the file says its physics."""
+    request = PointsRequest.named("6208, ISO VG 46, inlet-heat")
+    assert request.file_name == "6208_ISO_VG_46_inlet-heat.nc" and not PointsRequest.named("6208").inlet_heat
+    request = dataclasses.replace(request, loads=3, speeds=(0.0, 5.0), temperatures=(313.15,))
+    warm, cold = (points_map(dataclasses.replace(request, inlet_heat=heat)) for heat in (True, False))
+    assert (warm.attrs["physics"], cold.attrs["physics"]) == ("inlet-heat", "isothermal")
+    outer = request.bearing.contacts(STEEL)[1]
+    films = shipped_point_table().films(outer, request.oil, warm["load"].values, 5.0, 313.15, inlet_heat=True)
+    for name in NUMBERS:
+        np.testing.assert_array_equal(warm[name].values[1, :, 1, 0], getattr(films, name))
+    assert np.nanmax(warm["central_film"].values[:, :, 1] / cold["central_film"].values[:, :, 1]) < 0.95
 
 
 def test_it_is_no_map_of_lines_and_a_damaged_one_is_refused(made, tmp_path, capsys):

@@ -7,7 +7,7 @@ table does not hold has a status, its reason in words, and no numbers.
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,7 @@ from ehdmaps.errors import InputError, MapError, Problems
 from ehdmaps.jobs.make.points.asked import ENDING, MADE
 from ehdmaps.netcdf_structure import DAMAGE, structure_problem
 from ehdmaps.outputs import MADE_AS, dataset_kind, written_aside
+from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, heat_data
 from ehdmaps.physics.hertz import POINT_LIMIT
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
@@ -71,6 +72,8 @@ class PointsRequest:
         How many loads.
     speeds, temperatures : tuple of float
         Entrainment speeds [m/s], and temperatures [K]; those at which the oil has a state where they are left out.
+    inlet_heat : bool
+        Whether heat in the inlet thins the films, by its rule (`ehdmaps.physics.point.inlet_heat`).
     """
 
     bearing: BallGeometry
@@ -78,6 +81,7 @@ class PointsRequest:
     loads: int = LOADS
     speeds: tuple[float, ...] = SPEEDS
     temperatures: tuple[float, ...] = ()
+    inlet_heat: bool = False
 
     @classmethod
     def named(cls, bearing: str, oil: str | None = None) -> PointsRequest:
@@ -86,7 +90,7 @@ class PointsRequest:
         Parameters
         ----------
         bearing : str
-            Designation, such as "6208"; with an oil behind a comma where no other is given.
+            Designation, such as "6208"; behind commas an oil where no other is given, and inlet-heat or isothermal.
         oil : str, optional
             Name of the oil.
 
@@ -95,17 +99,20 @@ class PointsRequest:
         InputError
             With every problem.
         """
-        name, comma, beside = bearing.partition(",")
-        problems = Problems()
-        if comma and oil is not None:
-            problems.append(f"--oil: got {oil!r:.60} beside {beside.strip()!r:.60}; allowed: one of the two")
+        name, *parts = (part.strip() for part in bearing.split(","))
+        heat = parts.pop() == INLET_HEAT if parts and parts[-1] in (INLET_HEAT, ISOTHERMAL) else False
+        beside, problems = ", ".join(parts), Problems()
+        if beside and oil is not None:
+            problems.append(f"--oil: got {oil!r:.60} beside {beside!r:.60}; allowed: one of the two")
         found: list[Any] = []
-        oil_name = beside.strip() if comma else DEFAULT_OIL if oil is None else oil
+        oil_name = beside if beside else DEFAULT_OIL if oil is None else oil
         for option, read, text in (("--bearing", ball_estimate, name), ("--oil", Lubricant.named, oil_name)):
             with problems.after(f"{option}: "):
                 found.append(read(text))
         problems.check()
-        return cls(*found)
+        if heat:
+            heat_data(found[1], STEEL)
+        return replace(cls(*found), inlet_heat=heat)
 
     @property
     def file_name(self) -> str:
@@ -113,7 +120,7 @@ class PointsRequest:
         plain = "".join(letter if letter.isalnum() or letter in "-." else "_" for letter in self.oil.title)
         reach = self.bearing.clearance_range
         beside = f"_{reach.name}" if reach is not None and reach.typed else ""
-        return f"{self.bearing.name}{beside}_{plain}.nc"
+        return f"{self.bearing.name}{beside}_{plain}{f'_{INLET_HEAT}' * self.inlet_heat}.nc"
 
 
 def points_map(request: PointsRequest) -> xr.Dataset:
@@ -134,9 +141,8 @@ def points_map(request: PointsRequest) -> xr.Dataset:
     loads = np.geomspace(LIGHTEST, heaviest, request.loads)
     speeds, temperatures = np.array(request.speeds), np.array(request.temperatures or _held(request.oil))
     table = shipped_point_table()
-    films = [
-        table.films(contact, request.oil, loads[:, None, None], speeds[:, None], temperatures) for contact in contacts
-    ]
+    at, heat = (loads[:, None, None], speeds[:, None], temperatures), request.inlet_heat
+    films = [table.films(contact, request.oil, *at, inlet_heat=heat) for contact in contacts]
 
     def stacked(values: list[Any], units: str, words: str) -> Any:
         return variable(DIMS, np.stack(values), units, words)
@@ -159,7 +165,9 @@ def points_map(request: PointsRequest) -> xr.Dataset:
     }
     attributes = {
         MADE_AS: MADE,
-        "title": f"films of the point contacts of {request.bearing.title}, {request.oil.title}",
+        "title": f"films of the point contacts of {request.bearing.title}, {request.oil.title}"
+        f"{', inlet heat' * request.inlet_heat}",
+        "physics": INLET_HEAT if request.inlet_heat else ISOTHERMAL,
         "bearing": json.dumps(request.bearing.record()),
         "causes": json.dumps(CAUSES),
         "estimated": request.bearing.estimated or "",
