@@ -77,10 +77,9 @@ class Films:
             )
             for film in range(films)
         ]
-        self.course = CourseOfFilms(
-            [one.places for one in tables],
-            lambda film, *places: tables[film].prepare(*places, self.tables[film], self.numbers[film]),
-        )
+        for film, one in enumerate(tables):
+            one.cells, one.numbers = self.tables[film], self.numbers[film]
+        self.course = CourseOfFilms(tables)
 
     def blend(self, film: int, node: int, weight: float) -> tuple[FloatArray, FloatArray]:
         """Bring a table in use to a place between two nodes; its numbers (NUMBERS,) and cells (rows, 4, 2).

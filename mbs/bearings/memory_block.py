@@ -20,7 +20,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ehdmaps.arrays import BoolArray, FloatArray, IntArray
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import EhdmapsError
 from ehdmaps.kernel.library import checked
 from ehdmaps.kernel.record import Record, integers, numbers
@@ -51,7 +51,7 @@ NODES = 8
 _ROUND_OFF = 1e-12
 
 
-class MemoryTables:
+class MemoryTables(SpeedWindow):
     """Tables of one law at one temperature, for a window of speeds.
 
     Parameters
@@ -63,37 +63,15 @@ class MemoryTables:
         [K].
     rate : float
         Entrainment speed for each speed of the system [m/rad].
+    tables : array (NODES, NUMBERS)
+        Room for the tables of this law.
     """
 
-    def __init__(self, law: ContactLaw, temperature: float, rate: float) -> None:
-        self._law, self._temperature, self._rate = law, temperature, rate
-        self._window = SpeedWindow(STEP, NODES, law.plain_table.lowest_speed / abs(rate) if rate else 1.0)
+    def __init__(self, law: ContactLaw, temperature: float, rate: float, tables: FloatArray) -> None:
+        self._law, self._temperature, self._rate, self._tables = law, temperature, rate, tables
+        super().__init__(STEP, NODES, law.plain_table.lowest_speed / abs(rate) if rate else 1.0)
 
-    def places(self, speeds: FloatArray) -> tuple[IntArray, FloatArray]:
-        """Nodes and weights of speeds [rad/s], see `SpeedWindow.places`."""
-        return self._window.places(speeds)
-
-    def prepare(
-        self, speeds: FloatArray, nodes: IntArray, weights: FloatArray, tables: FloatArray
-    ) -> tuple[IntArray, BoolArray, IntArray]:
-        """Make the tables for the first of some speeds, see `SpeedWindow.prepare`.
-
-        Parameters
-        ----------
-        speeds : array (n,)
-            Speeds [rad/s].
-        nodes, weights : array (n,)
-            Nodes and weights from `places`.
-        tables : array (NODES, NUMBERS)
-            Room for the tables of this law.
-        """
-
-        def make(slot: int, speed: float, _: bool) -> Made:
-            return self._made(speed, tables[slot])
-
-        return self._window.prepare(speeds, nodes, weights, make, self._ahead)
-
-    def _ahead(self, speeds: FloatArray) -> None:
+    def ahead(self, speeds: FloatArray) -> None:
         """Have what costs most made for many speeds [rad/s] at once."""
         with contextlib.suppress(EhdmapsError):  # the step that asks for it will be told why
             at = np.array([self._entrainment(speed) for speed in speeds.tolist()])
@@ -104,11 +82,11 @@ class MemoryTables:
         lowest, u = self._law.plain_table.lowest_speed, abs(self._rate * speed)
         return lowest if abs(u - lowest) < _ROUND_OFF * lowest else u
 
-    def _made(self, speed: float, table: FloatArray) -> Made:
-        """Make the table of a speed."""
+    def make(self, slot: int, speed: float, alone: bool) -> Made:
+        """Make the table of a speed, see `SpeedWindow.make`."""
         before = dict(self._law.outside_counts)
         try:
-            table[:] = self._law.at(self._entrainment(speed), self._temperature).memory.table.numbers
+            self._tables[slot] = self._law.at(self._entrainment(speed), self._temperature).memory.table.numbers
         except EhdmapsError:
             return Made(sound=False)  # the step that asks for it will be told why
         return Made(sound=True, outside=self._law.outside_counts != before)
@@ -184,18 +162,13 @@ class MemoryBlock(CourseBlock):
 
     def __init__(self, members: Sequence[Member]) -> None:
         films_of, alike = alike_contacts(members)
+        tables, in_use = np.zeros((len(alike), NODES, NUMBERS)), np.full((len(alike), 2), -1.0)
         laws = []
-        for one in alike:
+        for one, room in zip(alike, tables, strict=True):
             assert not isinstance(one.law.law, DryLaw)  # an element with memory refuses it
-            laws.append(MemoryTables(one.law.law, one.temperature, one.rates[0]))
+            laws.append(MemoryTables(one.law.law, one.temperature, one.rates[0], room))
         rings = gather_rings(members, films_of)
-        tables, in_use = np.zeros((len(laws), NODES, NUMBERS)), np.full((len(laws), 2), -1.0)
-        course = CourseOfFilms(
-            [law.places for law in laws],
-            lambda film, *places: laws[film].prepare(*places, tables[film]),
-            in_turns=True,
-        )
-        super().__init__(course, in_use)
+        super().__init__(CourseOfFilms(laws, in_turns=True), in_use)
         most = rings.most
         self._memory = np.zeros((*films_of.shape, MEMORY * most))
         self._clock = np.array([math.nan, 0.0, math.nan, 0.0])

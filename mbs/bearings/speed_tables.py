@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import ctypes
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -53,16 +53,15 @@ class Made(NamedTuple):
     kind: int = 0
 
 
-Maker = Callable[[int, float, bool], Made]
-"""Makes the table of a slot for a speed [rad/s], which is a node or the only speed of the run so far."""
-
+Places = tuple[IntArray, FloatArray]
+Prepared = tuple[IntArray, BoolArray, IntArray]
 
 AHEAD = 64
 """Nodes for which what costs most is made at once: those of a run's next steps."""
 
 
 class SpeedWindow:
-    """The slots of the tables of one law.
+    """The slots of the tables of one law; laws inherit from it.
 
     Parameters
     ----------
@@ -74,19 +73,45 @@ class SpeedWindow:
         Speed at which the nodes change from even in ln of the speed to even in the speed [rad/s], > 0.
     varies : bool
         Whether the law changes with speed; a dry one has one table for all.
+
+    Attributes
+    ----------
+    varies : bool
+        The same.
     """
 
     def __init__(self, step: float, slots: int, lowest: float, varies: bool = True) -> None:
-        self._step, self._slots, self._lowest, self._varies = step, slots, lowest, varies
-        self._held: list[tuple[bool, float] | None] = [None] * slots
+        self._step, self._slots, self._lowest, self.varies = step, slots, lowest, varies
         self._sound, self._outside = np.zeros(slots, dtype=np.bool_), np.zeros(slots, dtype=np.bool_)
         self._kinds = np.zeros(slots, dtype=np.int64)
+        self.forget()
+
+    def forget(self) -> None:
+        """Hold no table any more."""
+        self._held: list[tuple[bool, float] | None] = [None] * self._slots
         self._foreseen = range(0)
 
-    def places(self, speeds: FloatArray) -> tuple[IntArray, FloatArray]:
+    def make(self, slot: int, speed: float, alone: bool) -> Made:
+        """Make the table of a slot.
+
+        Parameters
+        ----------
+        slot : int
+            Place of the table.
+        speed : float
+            Speed [rad/s].
+        alone : bool
+            Whether it is the only speed of the run so far, and no node.
+        """
+        raise NotImplementedError
+
+    def ahead(self, speeds: FloatArray) -> None:
+        """Take note of speeds [rad/s] whose tables will be made one by one, some to come among them."""
+
+    def places(self, speeds: FloatArray) -> Places:
         """Nodes below speeds [rad/s], and parts of the way to the next nodes; both zero for one speed alone."""
         size = np.abs(speeds)
-        if not self._varies or np.all(size == size[0]):
+        if not self.varies or np.all(size == size[0]):
             return np.zeros(size.size, dtype=np.int64), np.zeros(size.size)
         by_lowest = size / self._lowest
         place = np.where(by_lowest < 1.0, by_lowest - 1.0, np.log(np.maximum(by_lowest, 1.0))) / self._step
@@ -98,14 +123,7 @@ class SpeedWindow:
         place = node * self._step
         return self._lowest * (math.exp(place) if node > 0 else max(1.0 + place, 0.0))
 
-    def prepare(
-        self,
-        speeds: FloatArray,
-        nodes: IntArray,
-        weights: FloatArray,
-        make: Maker,
-        ahead: Callable[[FloatArray], None] | None = None,
-    ) -> tuple[IntArray, BoolArray, IntArray]:
+    def prepare(self, speeds: FloatArray, nodes: IntArray, weights: FloatArray) -> Prepared:
         """Have the tables made for the first of some speeds, as many as are held at once.
 
         Parameters
@@ -114,10 +132,6 @@ class SpeedWindow:
             Speeds [rad/s].
         nodes, weights : array (n,)
             Nodes and weights from `places`.
-        make : callable
-            Makes the table of a slot.
-        ahead : callable, optional
-            Told the speeds (n,) of the tables before these are made one by one [rad/s]: of some to come, too.
 
         Returns
         -------
@@ -128,32 +142,32 @@ class SpeedWindow:
         outside : array (k,), of int
             One where every call counts as outside the map.
         """
-        if not self._varies or not (np.any(weights) or np.any(nodes)):
+        if not self.varies or not (np.any(weights) or np.any(nodes)):
             speed = abs(float(speeds[0]))
-            self._hold(0, (True, speed if self._varies else 0.0), speed, make)
+            self._hold(0, (True, speed if self.varies else 0.0), speed)
             sound, outside = self._sound[:1], self._outside[:1]
             return np.zeros_like(nodes), np.repeat(sound, nodes.size), np.repeat(outside, nodes.size).astype(np.int64)
         low, high = np.minimum.accumulate(nodes), np.maximum.accumulate(nodes)
         count = int(np.searchsorted(high - low, self._slots - 2, side="right"))
         to_come = range(int(low[count - 1]), int(high[count - 1]) + 2)
         missing = [node for node in to_come if self._held[node % self._slots] != (False, float(node))]
-        if ahead is not None and not all(node in self._foreseen for node in missing):
+        if not all(node in self._foreseen for node in missing):
             rises = nodes[count - 1] >= nodes[0]
             first, last = missing[0], missing[-1]
             first, last = (first, max(last, first + AHEAD)) if rises else (min(first, last - AHEAD), last)
             self._foreseen = range(first, last + 1)
-            ahead(np.array([self.speed_of(node) for node in self._foreseen]))
+            self.ahead(np.array([self.speed_of(node) for node in self._foreseen]))
         for node in missing:
-            self._hold(node % self._slots, (False, float(node)), self.speed_of(node), make)
+            self._hold(node % self._slots, (False, float(node)), self.speed_of(node))
         slots, following = nodes[:count] % self._slots, (nodes[:count] + 1) % self._slots
         alike = self._kinds[slots] == self._kinds[following]
         return slots, alike & self._sound[slots] & self._sound[following], self._outside[slots].astype(np.int64)
 
-    def _hold(self, slot: int, key: tuple[bool, float], speed: float, make: Maker) -> None:
+    def _hold(self, slot: int, key: tuple[bool, float], speed: float) -> None:
         """Have the table of a slot made, unless it is there."""
         if self._held[slot] != key:
             self._held[slot] = key
-            self._sound[slot], self._outside[slot], self._kinds[slot] = make(slot, speed, key[0])
+            self._sound[slot], self._outside[slot], self._kinds[slot] = self.make(slot, speed, key[0])
 
 
 STEP = 1e-3
@@ -168,7 +182,7 @@ _FADED = -(2**60)
 _KIND = table.LawNumbers._fields.index("kind")
 
 
-class SpeedTables:
+class SpeedTables(SpeedWindow):
     """Tables of one law at one temperature, for a window of speeds.
 
     Parameters
@@ -184,27 +198,29 @@ class SpeedTables:
 
     Attributes
     ----------
-    varies : bool
-        Whether the law changes with speed; a dry one has one table for all.
     has_cells : bool
         Whether the law is read from cells; a power law is not.
+    cells, numbers : array (NODES + 1, rows, 8), (NODES + 1, NUMBERS)
+        Tables of a run, which sets them; the last one for the faded film.
     """
+
+    cells: FloatArray
+    numbers: FloatArray
 
     def __init__(self, bearing: Bearing, law: FlatLaw, temperature: float, rates: tuple[float, float]) -> None:
         self._bearing, self._law, self._temperature, self._rates = bearing, law, temperature, rates
-        self.varies = not isinstance(law.law, DryLaw)
         self.has_cells = not isinstance(law.law, DryLaw) or law.law.prepared(1.0)[1] is not None
         lowest, self._faded_below = 1.0, 0.0
         if not isinstance(law.law, DryLaw):
             lowest, self._faded_below = _limits(law.law, abs(rates[0]))
-        self._window = SpeedWindow(STEP, NODES, lowest, self.varies)
+        super().__init__(STEP, NODES, lowest, not isinstance(law.law, DryLaw))
         self._room = LawRoom()
         self._film = Made(sound=False)
         self._has_film = False
 
-    def places(self, speeds: FloatArray) -> tuple[IntArray, FloatArray]:
+    def places(self, speeds: FloatArray) -> Places:
         """Nodes and weights of speeds [rad/s], see `SpeedWindow.places`; the part of the film where it is faded."""
-        nodes, weights = self._window.places(speeds)
+        nodes, weights = super().places(speeds)
         law, faded = self._law.law, np.abs(speeds) < self._faded_below
         # Dry contacts that are one power law need no table.
         if not isinstance(law, DryLaw) and faded.any() and (np.any(speeds) or not is_one_power(law)):
@@ -212,76 +228,50 @@ class SpeedTables:
             weights[faded] = [self._law.film_part(law, self._rates[0] * speed) for speed in speeds[faded].tolist()]
         return nodes, weights
 
-    def prepare(
-        self, speeds: FloatArray, nodes: IntArray, weights: FloatArray, cells: FloatArray, numbers: FloatArray
-    ) -> tuple[IntArray, BoolArray, IntArray]:
-        """Make the tables for the first of some speeds, see `SpeedWindow.prepare`.
-
-        Parameters
-        ----------
-        speeds : array (n,)
-            Speeds [rad/s].
-        nodes, weights : array (n,)
-            Nodes and weights from `places`.
-        cells, numbers : array (NODES + 1, rows, 8), (NODES + 1, NUMBERS)
-            Tables, kept from call to call; the last one for the faded film.
-        """
+    def prepare(self, speeds: FloatArray, nodes: IntArray, weights: FloatArray) -> Prepared:
+        """Make the tables for the first of some speeds, see `SpeedWindow.prepare`; faded ones have one of their own."""
         faded = nodes == _FADED
         if faded[0]:
-            return self._faded(speeds[: _leading(faded)], cells, numbers)
+            return self._faded(speeds[: _leading(faded)])
         count = _leading(~faded)
-        speeds, nodes, weights = speeds[:count], nodes[:count], weights[:count]
+        return super().prepare(speeds[:count], nodes[:count], weights[:count])
 
-        def make(slot: int, speed: float, alone: bool) -> Made:
-            return self._made(speed, alone, cells[slot], numbers[slot])
-
-        return self._window.prepare(speeds, nodes, weights, make)
-
-    def _faded(
-        self, speeds: FloatArray, cells: FloatArray, numbers: FloatArray
-    ) -> tuple[IntArray, BoolArray, IntArray]:
+    def _faded(self, speeds: FloatArray) -> Prepared:
         """Have the table of the faded film made, unless it is there."""
         one = self._rates[1] == 0.0
         count = speeds.size if one else 1
         if not (one and self._has_film):
             conditions = self._conditions(abs(float(speeds[0])))
-            self._film = self._prepared(conditions, FILM_ALONE, table.KNOTS, cells[NODES], numbers[NODES])
+            self._film = self._prepared(conditions, FILM_ALONE, table.KNOTS, NODES)
             self._has_film = True
         slots, sound = np.full(count, NODES, dtype=np.int64), np.full(count, self._film.sound)
         return slots, sound, np.full(count, int(self._film.outside), dtype=np.int64)
 
-    def _made(self, speed: float, alone: bool, cells: FloatArray, numbers: FloatArray) -> Made:
-        """Make the table of a speed, or take over its power law."""
+    def make(self, slot: int, speed: float, alone: bool) -> Made:
+        """Make the table of a speed, see `SpeedWindow.make`, or take over its power law."""
         law, (u, temperature, centrifugal) = self._law.law, self._conditions(speed)
         if isinstance(law, DryLaw):
-            numbers[:], given = law.prepared(self._bearing.geometry.roller_length)
+            self.numbers[slot], given = law.prepared(self._bearing.geometry.roller_length)
             if given is not None:
-                cells[:] = given.reshape(-1, 8)
-            return _told(True, False, numbers)
+                self.cells[slot] = given.reshape(-1, 8)
+            return _told(True, False, self.numbers[slot])
         if not alone and speed >= self._faded_below > 0.0:
             # The node at the lowest speed has its whole film, whatever the rounding.
             u = max(abs(u), law.plain_table.lowest_speed)
-        return self._prepared((u, temperature, centrifugal), WHOLE, table.CELLS, cells, numbers)
+        return self._prepared((u, temperature, centrifugal), WHOLE, table.CELLS, slot)
 
-    def _prepared(
-        self,
-        conditions: tuple[float, float, float],
-        asked: int,
-        wanted: float,
-        cells: FloatArray,
-        numbers: FloatArray,
-    ) -> Made:
+    def _prepared(self, conditions: tuple[float, float, float], asked: int, wanted: float, slot: int) -> Made:
         """Make the law ready at some conditions: a table of the kind that is wanted, or a power law, is sound."""
-        law, room, centrifugal = self._law.law, self._room, conditions[2]
+        law, room, centrifugal, numbers = self._law.law, self._room, conditions[2], self.numbers[slot]
         assert not isinstance(law, DryLaw)
         if not 0.0 <= centrifugal < law.load_range[1]:
             return Made(sound=False)
         outside = room.prepare(self._law.data(law, centrifugal > 0.0), conditions, asked) != 0
         numbers[:] = room.numbers
         if numbers[_KIND] == table.CELLS:
-            cells[:] = room.array("cells").reshape(-1, 8)
+            self.cells[slot] = room.array("cells").reshape(-1, 8)
         elif numbers[_KIND] == table.KNOTS and wanted == table.KNOTS:
-            cells[:] = room.array("film")
+            self.cells[slot] = room.array("film")
         sound = numbers[_KIND] in (wanted, table.POWER) and not (outside and law.outside == "error")
         return _told(bool(sound), outside, numbers)
 
@@ -341,30 +331,19 @@ load by load that is some 1e-5, as much as their parabolas are wrong. Slices are
 the machine at an eighth of the rate of the steps, the more the faster a run-up begins."""
 
 
-Places = tuple[IntArray, FloatArray]
-Prepared = tuple[IntArray, BoolArray, IntArray]
-
-
 class CourseOfFilms:
     """Places of the tables of the films of a run, step after step.
 
     Parameters
     ----------
-    places : sequence of callable
-        Nodes and weights of speeds (n,) [rad/s], a function for each film.
-    prepare : callable
-        Function that makes the tables of a film, by its index, for the first of some speeds, their nodes and weights.
+    windows : sequence of SpeedWindow
+        Tables of each film.
     in_turns : bool
         Whether what is read from the tables is kept for some steps, see `Course.kept`. Their places then lie ahead.
     """
 
-    def __init__(
-        self,
-        places: Sequence[Callable[[FloatArray], Places]],
-        prepare: Callable[[int, FloatArray, IntArray, FloatArray], Prepared],
-        in_turns: bool = False,
-    ) -> None:
-        self._place, self._prepare, self._in_turns = places, prepare, in_turns
+    def __init__(self, windows: Sequence[SpeedWindow], in_turns: bool = False) -> None:
+        self._windows, self._in_turns = windows, in_turns
         self._places: list[Places] = []
         self._speeds = np.zeros(0)
         self._kept = np.zeros(0, dtype=np.int64)
@@ -372,7 +351,7 @@ class CourseOfFilms:
     def begin(self, speeds: FloatArray) -> None:
         """Find the places of the speeds [rad/s] on the tables."""
         self._speeds = speeds
-        self._places = [place(speeds) for place in self._place]
+        self._places = [window.places(speeds) for window in self._windows]
         self._kept = np.ones(speeds.size, dtype=np.int64)
         if self._in_turns:
             self._kept = _kept(self._places, speeds.size)
@@ -388,8 +367,8 @@ class CourseOfFilms:
         """
         part = slice(first, last)
         films = [
-            (*self._prepare(film, self._speeds[part], nodes[part], weights[part]), weights[part])
-            for film, (nodes, weights) in enumerate(self._places)
+            (*window.prepare(self._speeds[part], nodes[part], weights[part]), weights[part])
+            for window, (nodes, weights) in zip(self._windows, self._places, strict=True)
         ]
         count = min((slots.size for slots, _, _, _ in films), default=last - first)
         course, whole = course_of(count, len(films)), np.ones(count, dtype=np.bool_)

@@ -21,7 +21,7 @@ import numpy as np
 from ehdmaps.maps.emap import open_map
 from mbs import Model, assemble, read_scene, runup
 from mbs.analyses.runup import RunUpResult
-from mbs.bearings.speed_tables import Maker, SpeedWindow
+from mbs.bearings.speed_tables import SpeedWindow
 from mbs.model.profiles import Course, SpeedProfile
 from mbs.scene.scene import Scene
 from mbs.transient import run_elements
@@ -84,10 +84,10 @@ def collapses(model: Model) -> int:
     made: list[tuple[object, int]] = []
     hold = SpeedWindow._hold
 
-    def counted(window: SpeedWindow, slot: int, key: tuple[bool, float], speed: float, make: Maker) -> None:
+    def counted(window: SpeedWindow, slot: int, key: tuple[bool, float], speed: float) -> None:
         if window._held[slot] != key:
             made.append((window, slot))
-        hold(window, slot, key, speed, make)
+        hold(window, slot, key, speed)
 
     with mock.patch.object(SpeedWindow, "_hold", counted):
         runup(model, dataclasses.replace(model.scene.run_up, speed=steady))

@@ -110,9 +110,9 @@ def test_a_speed_that_does_not_change_has_one_table(memory, monkeypatch):
     made = []
     hold = SpeedWindow._hold
 
-    def counted(window, slot, key, speed, make):
+    def counted(window, slot, key, speed):
         made.extend([slot] if window._held[slot] != key else [])
-        hold(window, slot, key, speed, make)
+        hold(window, slot, key, speed)
 
     monkeypatch.setattr(SpeedWindow, "_hold", counted)
     given = system(map_law(), memory=memory)

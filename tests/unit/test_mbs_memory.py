@@ -21,7 +21,7 @@ from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import hertz
 from mbs.bearings.memory_block import MEMORY, STEP, resume
-from mbs.bearings.speed_tables import MOST_KEPT, CourseOfFilms
+from mbs.bearings.speed_tables import MOST_KEPT, CourseOfFilms, SpeedWindow
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
 from mbs.model.equilibrium import equilibrium
@@ -184,16 +184,18 @@ def test_compiled_films_keep_up_with_a_speed_that_rises_steeply():
     assert compiled.states.acceleration == pytest.approx(python.states.acceleration, abs=1e-3 * moved)
 
 
-def test_tables_are_kept_as_long_as_the_speed_allows():
-    def places(speeds):
-        place = np.log(speeds) / STEP
-        return np.floor(place).astype(np.int64), place - np.floor(place)
+class Placed(SpeedWindow):
+    """A window whose tables are all there."""
 
-    course = CourseOfFilms(
-        [places],
-        lambda film, speeds, nodes, weights: (nodes, np.ones(nodes.size, dtype=bool), np.zeros_like(nodes)),
-        in_turns=True,
-    )
+    def __init__(self):
+        super().__init__(STEP, 1, 50.0)
+
+    def prepare(self, speeds, nodes, weights):
+        return nodes, np.ones(nodes.size, dtype=bool), np.zeros_like(nodes)
+
+
+def test_tables_are_kept_as_long_as_the_speed_allows():
+    course = CourseOfFilms([Placed()], in_turns=True)
     found = {}
     for rise in (0.0, 2e-6, 1e-5, 3e-5, 1e-3):
         course.begin(100.0 * np.exp(rise * np.arange(20)))
@@ -209,16 +211,7 @@ def test_slices_lag_behind_the_speed_by_nothing_on_the_mean():
 
     Bounded is rounding; without places ahead the mean is 7 steps old, 0.0175 of the distance of two tables.
     """
-
-    def places(speeds):
-        place = np.log(speeds / 50.0) / STEP
-        return np.floor(place).astype(np.int64), place - np.floor(place)
-
-    course = CourseOfFilms(
-        [places],
-        lambda film, speeds, nodes, weights: (nodes, np.ones(nodes.size, dtype=bool), np.zeros_like(nodes)),
-        in_turns=True,
-    )
+    course = CourseOfFilms([Placed()], in_turns=True)
     steps, slices = 64, np.arange(24)
     speeds = 100.0 * np.exp(1e-5 * 0.6 * np.arange(steps))
     course.begin(speeds)

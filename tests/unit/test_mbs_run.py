@@ -210,10 +210,9 @@ class TestOutsideTheMap:
 class TestSpeedTables:
     def tables(self):
         bearing = Bearing.named("NU308", clearance=0.0).with_slices(5)
-        return SpeedTables(bearing, FlatLaw(map_law()), TEMPERATURE, (1.0, 0.0))
-
-    def room(self):
-        return np.zeros((NODES + 1, 2 * 448, 8)), np.zeros((NODES + 1, len(LawNumbers._fields)))
+        tables = SpeedTables(bearing, FlatLaw(map_law()), TEMPERATURE, (1.0, 0.0))
+        tables.cells, tables.numbers = np.zeros((NODES + 1, 2 * 448, 8)), np.zeros((NODES + 1, len(LawNumbers._fields)))
+        return tables
 
     def test_places_are_straight_in_the_logarithm(self):
         speeds = np.array([0.5, -0.7, 0.7, 2.0])
@@ -222,13 +221,13 @@ class TestSpeedTables:
         assert np.all((weights >= 0.0) & (weights < 1.0))
 
     def test_window_is_as_wide_as_it_can_be(self):
-        tables, room = self.tables(), self.room()
+        tables = self.tables()
         speeds = np.exp(np.arange(200) * 0.5 * STEP)
         nodes, weights = tables.places(speeds)
         done, looked = 0, 0
         while done < speeds.size:
             part = slice(done, None)
-            slots, sound, outside = tables.prepare(speeds[part], nodes[part], weights[part], *room)
+            slots, sound, outside = tables.prepare(speeds[part], nodes[part], weights[part])
             assert sound.all()
             assert not outside.any()
             np.testing.assert_array_equal(slots, nodes[done : done + slots.size] % NODES)
@@ -239,33 +238,33 @@ class TestSpeedTables:
     @pytest.mark.parametrize("jump", [0.3, 0.05, 3.0])
     def test_jumping_to_and_fro_keeps_no_stale_table(self, jump):
         """After any history the tables are those that a fresh start makes."""
-        tables, room = self.tables(), self.room()
+        tables = self.tables()
         for base in (0.9, 0.9 * math.exp(jump * STEP * NODES), 0.9, 0.95, 0.9):
             speeds = base * np.exp(np.linspace(0.0, 0.3, 20) * STEP * NODES)
             nodes, weights = tables.places(speeds)
-            slots, _, _ = tables.prepare(speeds, nodes, weights, *room)
-            fresh, new = self.tables(), self.room()
-            fresh.prepare(speeds, nodes, weights, *new)
+            slots, _, _ = tables.prepare(speeds, nodes, weights)
+            fresh = self.tables()
+            fresh.prepare(speeds, nodes, weights)
             for slot in {*slots.tolist(), *((slots + 1) % NODES).tolist()}:
-                np.testing.assert_array_equal(room[0][slot], new[0][slot])
-                np.testing.assert_array_equal(room[1][slot], new[1][slot])
-            tables.prepare(*(np.full(1, value) for value in (base, 0, 0.0)), *room)  # one speed alone, in between
+                np.testing.assert_array_equal(tables.cells[slot], fresh.cells[slot])
+                np.testing.assert_array_equal(tables.numbers[slot], fresh.numbers[slot])
+            tables.prepare(*(np.full(1, value) for value in (base, 0, 0.0)))  # one speed alone, in between
 
     def test_a_faded_film_has_one_table(self):
         """Its weight is the part of the film, from which a call makes the same table at any speed below the map."""
-        tables, room = self.tables(), self.room()
+        tables = self.tables()
         speeds = np.array([0.0, 1e-3, 0.2, 0.29, 0.31])
         nodes, weights = tables.places(speeds)
-        slots, sound, _ = tables.prepare(speeds, nodes, weights, *room)
+        films = Films([tables])
+        slots, sound, _ = tables.prepare(speeds, nodes, weights)
         assert slots.tolist() == [NODES] * 4
         assert sound.all()
-        element, films = BearingForce(Bearing.named("NU308", clearance=0.0).with_slices(5), map_law()), Films([tables])
-        films.tables[0], films.numbers[0] = room
+        element = BearingForce(Bearing.named("NU308", clearance=0.0).with_slices(5), map_law())
         for speed, weight in zip(speeds[1:4], weights[1:4], strict=True):
             own, (numbers, cells) = element.at(speed, TEMPERATURE), films.blend(0, NODES, weight)
             np.testing.assert_array_equal(numbers, own.numbers)
             np.testing.assert_array_equal(cells, own.cells)
-        slots, sound, _ = tables.prepare(speeds[4:], nodes[4:], weights[4:], *room)
+        slots, sound, _ = tables.prepare(speeds[4:], nodes[4:], weights[4:])
         assert slots.size == 1
         assert sound.all()
 

@@ -268,7 +268,7 @@ class TestFilmsOverSpeed:
         tables = SpeedTables(force.bearing, force.flat_law, TEMPERATURE, (1.0, 0.0))
         films = Films([tables])
         nodes, weights = tables.places(speeds)
-        slots, sound, _ = tables.prepare(speeds, nodes, weights, films.tables[0], films.numbers[0])
+        slots, sound, _ = tables.prepare(speeds, nodes, weights)
         assert sound.all()
         return films.blend(0, int(slots[0]), float(weights[0]))
 

@@ -13,13 +13,13 @@ from typing import ClassVar
 
 import numpy as np
 
-from ehdmaps.arrays import BoolArray, FloatArray, IntArray
+from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.errors import EhdmapsError
 from ehdmaps.kernel.library import checked
 from ehdmaps.kernel.record import Record, integers, numbers, room
 from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.bearings.locating.normal_law import NormalLaw, PairLaw, contacts_at
-from mbs.bearings.speed_tables import CourseOfFilms, Made, Prepared, SpeedWindow, shared
+from mbs.bearings.speed_tables import CourseOfFilms, Made, SpeedWindow, shared
 
 STEP = 0.04
 """Distance of the nodes in ln of the speed: blends are wrong by less than 1e-4 of the load, see the tests."""
@@ -106,21 +106,22 @@ def on_grid(law: NormalLaw, grid: NormalLaw, out: FloatArray) -> None:
     out[0, 3], out[-1, 3] = out[1, 2] - out[0, 2], out[-1, 2] - out[-2, 2]
 
 
-class FilmLaws:
+class FilmLaws(SpeedWindow):
     """Laws of one film at the nodes of a window of speeds.
 
     Parameters
     ----------
     element : LocatingElement
         One of the bearings with the film.
-    rows : int
-        Rows of the tables.
+    films : FilmData
+        Laws as C has them; written.
+    film : int
+        Place of the film there.
     """
 
-    def __init__(self, element: LocatingElement, rows: int) -> None:
-        self._element, self._rows = element, rows
-        self.varies = element.varies
-        self._window = SpeedWindow(STEP, SLOTS, _LOWEST, self.varies)
+    def __init__(self, element: LocatingElement, films: FilmData, film: int) -> None:
+        super().__init__(STEP, SLOTS, _LOWEST, element.varies)
+        self._element, self._films, self._film = element, films, film
         self._grids: tuple[NormalLaw, ...] = ()
         self._reach = math.inf, 0.0
 
@@ -143,30 +144,20 @@ class FilmLaws:
                 continue  # the step that asks for it will be told why
             if not (ends[0].dry or ends[1].dry):
                 pairs = zip(*(end.sides for end in ends), strict=True)
-                self._grids = tuple(_over(slow, fast, self._rows) for slow, fast in pairs)
-                self._reach, self._window = reach, SpeedWindow(STEP, SLOTS, _LOWEST)
+                self._grids = tuple(_over(slow, fast, self._films.rows) for slow, fast in pairs)
+                self._reach = reach
+                self.forget()
                 return
 
-    def places(self, speeds: FloatArray) -> tuple[IntArray, FloatArray]:
-        """Nodes and weights of speeds [rad/s]."""
-        return self._window.places(speeds)
-
-    def prepare(self, films: FilmData, film: int, speeds: FloatArray, nodes: IntArray, weights: FloatArray) -> Prepared:
-        """Make the laws for the first of some speeds, see `SpeedWindow.prepare`."""
-
-        def make(slot: int, speed: float, alone: bool) -> Made:
-            return self._made(films, film, slot, speed, alone)
-
-        return self._window.prepare(speeds, nodes, weights, make)
-
-    def _made(self, films: FilmData, film: int, slot: int, speed: float, alone: bool) -> Made:
-        """Write the laws of a node."""
+    def make(self, slot: int, speed: float, alone: bool) -> Made:
+        """Write the laws of a node, see `SpeedWindow.make`."""
+        films, film = self._films, self._film
         try:
             law: PairLaw = self._element.law_at(speed)
         except EhdmapsError:
             return Made(sound=False)
         films.given("most")[film, slot] = law.loads[1]
-        films.given("lengths")[film, slot] = 0 if law.dry else self._rows
+        films.given("lengths")[film, slot] = 0 if law.dry else films.rows
         for side, one in enumerate(law.sides):
             numbers, table = films.given("numbers")[film, slot, side], films.given("tables")[film, slot, side]
             if alone or law.dry:
@@ -215,13 +206,13 @@ class FilmCourse:
 
     def __init__(self, elements: Sequence[LocatingElement], rows: int) -> None:
         self.films_of, firsts = shared(one.film_key for one in elements)
-        self._laws = [FilmLaws(elements[first], rows) for first in firsts]
-        rows, slots = (rows, SLOTS) if any(one.varies for one in self._laws) else (0, 1)
+        rows, slots = (rows, SLOTS) if any(elements[first].varies for first in firsts) else (0, 1)
         shorter = next((one.force.shorter for one in elements if one.relaxes), ())
         columns = len(shorter) + 1 if shorter else 0
         sizes = {"films": len(firsts), "slots": slots, "rows": rows, "columns": columns, "steps": 0}
         self.data = checked(FilmData, "ehd_pair_films")(**sizes, **room(FilmData, sizes), shorter=np.array(shorter))
-        self._course = CourseOfFilms([one.places for one in self._laws], self._made)
+        self._laws = [FilmLaws(elements[first], self.data, film) for film, first in enumerate(firsts)]
+        self._course = CourseOfFilms(self._laws)
 
     def begin(self, speeds: FloatArray) -> None:
         """Find the places of the speeds [rad/s] on the tables, and the grids of these."""
@@ -241,7 +232,3 @@ class FilmCourse:
         self.data.given("in_use")[:, 1] = math.nan  # to be mixed anew
         self.data.put(steps=sound.size, nodes=course.given("nodes"), weights=course.given("weights"))
         return sound
-
-    def _made(self, film: int, speeds: FloatArray, nodes: IntArray, weights: FloatArray) -> Prepared:
-        """Make the laws of a film."""
-        return self._laws[film].prepare(self.data, film, speeds, nodes, weights)
