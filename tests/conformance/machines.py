@@ -139,7 +139,7 @@ def preloaded(left: str, right: str = "") -> Bearings:
 KINDS = (
     Machine("cylindrical", alike(NU), axial=False),
     Machine("rollers as bodies", alike(FEW), axial=False),
-    Machine("needle", alike(NEEDLE), axial=False),
+    Machine("needle", (("left", NEEDLE), ("right", NEEDLE.replace("NA4908", "HK4020"))), axial=False),
     Machine("deep groove", alike(BALL)),
     Machine("hybrid, thin section", (("left", 'bearing = "6208 HC"'), ("right", 'bearing = "61912"'))),
     Machine(

@@ -191,7 +191,7 @@ FAMILIES = {
     "double row cylindrical roller bearing": ("NN3010", "NNU4920"),
     "full complement cylindrical roller bearing": ("NCF2808", "NJG2318", "SL045010"),
     "double row angular contact ball bearing of another series": ("3008", "3808"),
-    "drawn cup needle roller bearing": ("HK2020", "BK1616"),
+    "drawn cup needle roller bearing": ("BK1616", "HN2020"),
     "needle roller bearing of another type": ("NKI40/20", "NK40/20"),
     "tapered roller bearing of another series": ("33208", "33010"),
     "deep groove ball bearing of another series": ("62208", "63008", "6708"),

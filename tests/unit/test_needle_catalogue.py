@@ -10,7 +10,7 @@ import pytest
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.catalogue import boundary, designated
-from ehdmaps.physics.designations.reader import ROLLERS, bore_code, plain_name
+from ehdmaps.physics.designations.reader import ROLLERS, bore_code, plain_name, table
 from ehdmaps.physics.rollers import needle_catalogue as needles
 from ehdmaps.physics.rollers.ratings import Rollers, by_ratings, dynamic_rating, static_rating
 from mbs.bearings import laws
@@ -97,3 +97,17 @@ def test_what_is_no_needle_bearing_is_refused() -> None:
         needles.needle_estimate("NA4908", 10e3)
     with pytest.raises(InputError, match=r"basic_static_rating nan N; allowed: finite and > 0"):
         needles.needle_estimate("NA4908", math.nan)
+
+
+def test_drawn_cups_have_needles_as_they_are_made():
+    """By both ratings all are near half millimetres, by chance a fifth; what is left of the section is the cup."""
+    names = [name for name in needles.needle_designations() if name.startswith("HK")]
+    rows = table("needles")["drawn"]
+    assert len(names) == len(rows) == 47
+    for name, (within, width, outside, dynamic, static) in zip(names, rows, strict=True):
+        found = needles.needle_estimate(name)
+        diameter = needles.needle_diameter(1e-3 * within, (dynamic, static), needles.DRAWN_QUALITY)
+        assert diameter == pytest.approx(found.roller_diameter, rel=0.05 if within < 8 else 0.03), name
+        assert found.inner_raceway_diameter == pytest.approx(1e-3 * within)
+        assert 0.4e-3 < 0.5 * (1e-3 * outside - found.outer_raceway_diameter) < 1.1e-3, name
+        assert found.roller_length < 0.95e-3 * width and found.clearance_range.name == "F8/h5"

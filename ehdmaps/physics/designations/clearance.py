@@ -12,7 +12,8 @@ References
 ----------
 ISO 5753-1, Rolling bearings - Internal clearance - Part 1: Radial internal clearance for radial bearings, cylindrical
 bore: values as printed in makers' tables, which agree (SKF for rollers; SKF, NSK, Fujian Huafeng for balls).
-ISO 286-2: F6, G6 and h5. Which of them: catalogues of INA and IKO for cages, of SKF for series 49.
+ISO 286-2: F6, F8, G6 and h5. Which of them: catalogues of INA and IKO for cages, of SKF for series 49, ISO 3245 for
+drawn cups, in a ring gauge.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ from ehdmaps.physics.designations.reader import (
     CYLINDRICAL,
     DEEP_GROOVE,
     DOUBLE_ROW,
+    DRAWN_CUP,
     FOUR_POINT,
     NEEDLE,
     SELF_ALIGNING,
@@ -48,14 +50,14 @@ _FIT = {CYLINDRICAL: 20e-6, NEEDLE: 20e-6, DEEP_GROOVE: 10e-6}
 class P0 with a bore of 40 mm has 2 to 25 um of interference, of which three quarters arrive at the raceway; rings of
 that bore lose 4 um where the inner one is 5 K warmer."""
 
-# largest diameter [mm]; F6, G6: least and largest deviation of a hole; h5: tolerance of a shaft below its diameter [um]
+# largest diameter [mm]; F6, G6: least and largest deviation of a hole, F8: largest; h5: tolerance of a shaft below its diameter [um]
 _SHAFTS = (
-    (10, 13, 22, 5, 14, 6),
-    (18, 16, 27, 6, 17, 8),
-    (30, 20, 33, 7, 20, 9),
-    (50, 25, 41, 9, 25, 11),
-    (80, 30, 49, 10, 29, 13),
-    (120, 36, 58, 12, 34, 15),
+    (10, 13, 22, 5, 14, 35, 6),
+    (18, 16, 27, 6, 17, 43, 8),
+    (30, 20, 33, 7, 20, 53, 9),
+    (50, 25, 41, 9, 25, 64, 11),
+    (80, 30, 49, 10, 29, 76, 13),
+    (120, 36, 58, 12, 34, 90, 15),
 )
 _AXIAL = {DOUBLE_ROW: ("double_row", 20e-6), FOUR_POINT: ("four_point", 14e-6)}
 """Tables of axial clearances, and the most that fits and warmth take of them [m]."""
@@ -249,7 +251,7 @@ def shaft_range(kind: str, raceway: float) -> ClearanceRange | None:
     Parameters
     ----------
     kind : str
-        Needle bearing, of series 49, or needle cage.
+        Needle bearing, of series 49, needle cage, or drawn cup.
     raceway : float
         Diameter of the shaft [m].
 
@@ -262,6 +264,8 @@ def shaft_range(kind: str, raceway: float) -> ClearanceRange | None:
         if raceway <= 1e-3 * largest * (1.0 + 1e-9):
             if kind == NEEDLE:  # whose outer ring sits in a housing
                 return ClearanceRange("F6/h5", hole[0] / 1e6, (hole[1] + shaft) / 1e6, _FIT[kind])
+            if kind == DRAWN_CUP:  # measured in a ring gauge; a tighter housing takes more
+                return ClearanceRange("F8/h5", hole[0] / 1e6, (hole[4] + shaft) / 1e6, _FIT[NEEDLE])
             return ClearanceRange("G6/h5", hole[2] / 1e6, (hole[3] + shaft) / 1e6, 0.0)
     return None
 

@@ -11,7 +11,7 @@ from ehdmaps.physics.designations.reader import BALLS, ROLLERS, TAPERED, plain_n
 SERVED = (
     "deep groove balls 618, 619, 160, 60, 62, 63, 64; angular contact balls 718, 719, 70, 72, 73, two rows 32, 33, "
     "four-point QJ, self-aligning 12, 13, 22, 23; cylindrical rollers N, NU, NJ, NUP of 10, 2, 22, 3, 23, NCF of 18, "
-    "22, 29, 30; needles K, NA49; tapered rollers 302, 303, 313, 320, 322, 323"
+    "22, 29, 30; needles K, NA49, HK; tapered rollers 302, 303, 313, 320, 322, 323"
 )
 """Kinds and series that are served, in words."""
 
@@ -35,7 +35,7 @@ _FAMILIES = tuple(
         (r"(?:NNU?|NNTR?)[ -]?\d{4,5}", "double row cylindrical roller bearing"),
         (r"(?:NNCF?|NNCL|NNF|NCF|NCL|NJG|NJF|SL)[ -]?\d{4,6}", "full complement cylindrical roller bearing"),
         (r"(?:RNU|RN|NF|NP|NH|NUB|NJP|NUJ|NFP)[ -]?\d{3,4}", "cylindrical roller bearing of another type"),
-        (r"(?:HK|BK|HN|RHNA?)[ -]?\d{4}", "drawn cup needle roller bearing"),
+        (r"(?:BK|HN|RHNA?)[ -]?\d{4}", "drawn cup needle roller bearing"),
         (r"(?:NKI[ABS]?|NKS|NKXR?|NK|NXZ?|R?NAO|NAX[IRK]*)[ -]?\d[\dX*/-]*", "needle roller bearing of another type"),
         (r"R?NA[ -]?(?:48|69)[ -]?\d\d", "needle roller bearing of another series"),
         (r"(?:329|330|331|332|318|319|307|308|321|324)[ -]?\d\d", "tapered roller bearing of another series"),

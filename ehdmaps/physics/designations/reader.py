@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 from ehdmaps.physics.designations.affixes import CLEARANCE, HYBRID, SET, Affix, prefix, suffixes
 
-CYLINDRICAL, NEEDLE, NEEDLE_CAGE, DEEP_GROOVE, ANGULAR, TAPERED, DOUBLE_ROW, FOUR_POINT, SELF_ALIGNING = (
+CYLINDRICAL, NEEDLE, NEEDLE_CAGE, DEEP_GROOVE, ANGULAR, TAPERED, DOUBLE_ROW, FOUR_POINT, SELF_ALIGNING, DRAWN_CUP = (
     "cylindrical roller bearing",
     "needle roller bearing",
     "needle cage",
@@ -24,9 +24,11 @@ CYLINDRICAL, NEEDLE, NEEDLE_CAGE, DEEP_GROOVE, ANGULAR, TAPERED, DOUBLE_ROW, FOU
     "double row angular contact ball bearing",
     "four-point contact ball bearing",
     "self-aligning ball bearing",
+    "drawn cup needle roller bearing",
 )
 OF_ROWS = (DOUBLE_ROW, FOUR_POINT, SELF_ALIGNING)
-BALLS, ROLLERS, NEEDLES = (DEEP_GROOVE, ANGULAR, *OF_ROWS), (CYLINDRICAL, NEEDLE, NEEDLE_CAGE), (NEEDLE, NEEDLE_CAGE)
+NEEDLES = (NEEDLE, NEEDLE_CAGE, DRAWN_CUP)
+BALLS, ROLLERS = (DEEP_GROOVE, ANGULAR, *OF_ROWS), (CYLINDRICAL, *NEEDLES)
 
 
 class _Kind(NamedTuple):
@@ -40,6 +42,7 @@ _KINDS = (
     _Kind(CYLINDRICAL, r"(NUP|NU|NJ|N)[ -]*(10|22|23|2|3)[ -]?(\d\d)"),
     _Kind(CYLINDRICAL, r"(NCF)[ -]*(18|22|29|30)[ -]?(\d\d)(?:[ -]?C?V)?"),
     _Kind(NEEDLE, r"(R?NAV?)[ -]?(49)[ -]?(\d\d)"),
+    _Kind(DRAWN_CUP, r"(HK)[ -]?(\d\d)[ -]?(\d\d)(?:[CF]|TN|TV)?"),
     _Kind(NEEDLE_CAGE, r"(K) ?(\d+[X*]\d+[X*]\d+)"),
     _Kind(DEEP_GROOVE, r"(618|619|160|6[023489])[ -]?(\d\d)"),
     _Kind(ANGULAR, r"(718|719|7[02389])[ -]?(\d\d)[ .-]?(A5|AC|C|B|E)"),

@@ -1,11 +1,13 @@
 """Needle roller bearings that only a catalogue describes: estimated, and marked so.
 
-Two kinds have a designation that tells dimensions:
+Three kinds have a designation that tells dimensions:
 
 - cages K (K40x48x20): the raceways of shaft and housing, and so the diameter of the needles, are in the designation;
 - machined rings of series 49: NA with, RNA without inner ring, whose raceway is that of a cage of needles. Their
   diameter comes from both ratings, see `ehdmaps.physics.rollers.ratings`. NAV and RNAV have the same needles without a
-  cage, as many as go in: full complement.
+  cage, as many as go in: full complement;
+- drawn cups HK (HK2020): the shaft and the width. The cup is taken as rigid, as a housing holds it; it yields more than
+  a ring.
 
 The static rating gives Z L D as a whole; how it divides into number and length is an estimate, with `FILLED` of the
 pitch circle, and hardly matters for stiffness.
@@ -16,7 +18,8 @@ rounded.
 
 References
 ----------
-Dimensions and ratings: SKF, Rolling bearings (general catalogue, 2018). Raceways of series 49: ISO 1206.
+Dimensions and ratings: SKF, Rolling bearings (general catalogue, 2018). Raceways of series 49: ISO 1206. Drawn cups:
+NTN, Needle roller bearings.
 """
 
 from __future__ import annotations
@@ -37,11 +40,14 @@ FILLED, FULL = 0.75, 0.995
 QUALITY = 1.038
 """Factor b_m of ISO 281 in the ratings of needle cages whose needles are known."""
 
+DRAWN_QUALITY = 1.1
+"""The same of drawn cups: needles of all in the table are then of whole or half millimetres within 3 %."""
+
 ERRORS = "raceways to about 1 %, roller diameter {} %, roller length 15 %, number of rollers +-{}"
 
 _MM = 1e-3
 
-_CAGES, _MACHINED = table("needles")["cages"], table("needles")["machined"]
+_CAGES, _MACHINED, _DRAWN = (table("needles")[name] for name in ("cages", "machined", "drawn"))
 
 
 class NeedleBoundary(NamedTuple):
@@ -58,7 +64,7 @@ def needle_estimate(designation: str, basic_static_rating: float | None = None) 
     Parameters
     ----------
     designation : str
-        NA, RNA, NAV, RNAV of series 49 with bores of 10 to 100 mm; K with raceways and width in mm.
+        NA, RNA, NAV, RNAV of series 49 with bores of 10 to 100 mm; drawn cups HK for shafts of 5 to 50 mm; K with raceways and width in mm.
     basic_static_rating : float, optional
         C0 [N] of the bearing's own catalogue; else that of the table.
 
@@ -74,14 +80,14 @@ def needle_estimate(designation: str, basic_static_rating: float | None = None) 
     (25, 5.0, 14.25)
     """
     name = plain_name(designation, NEEDLES)
-    found = _cage(name) or _rings(name)
+    found = _cage(name) or _drawn(name) or _rings(name)
     if found is None:
         raise not_known(
             designation,
             "needle bearing",
             needle_designations(),
-            "NA, RNA, NAV, RNAV of series 49 with bores of 10 to 100 mm, such as 'NA4908'; cages such as 'K40x48x20'; "
-            "give others by their dimensions",
+            "NA, RNA, NAV, RNAV of series 49 with bores of 10 to 100 mm, such as 'NA4908'; drawn cups such as 'HK2020'; "
+            "cages such as 'K40x48x20'; give others by their dimensions",
         )
     inner, diameter, width, rating = found
     pitch, own = inner + diameter, basic_static_rating is not None
@@ -99,7 +105,7 @@ def needle_estimate(designation: str, basic_static_rating: float | None = None) 
     full = "V" in name
     if full:
         count = min(most, int(FULL * math.pi * pitch / diameter))
-    whose = "own" if own else "SKF's"
+    whose = "own" if own else "NTN's" if name[0] == "H" else "SKF's"
     basis = f"catalogue dimensions and {whose} static rating (ISO 76)" + (", full complement" if full else "")
     errors = ERRORS.format(1 if name[0] == "K" else 4, 1 if full else 4)
     return BearingGeometry(
@@ -116,7 +122,7 @@ def needle_estimate(designation: str, basic_static_rating: float | None = None) 
 
 def _bore(name: str) -> float | None:
     """Bore of the inner ring [m]; None where there is none."""
-    boundary = None if name[0] in "KR" else needle_boundary(name)
+    boundary = None if name[0] in "KRH" else needle_boundary(name)
     return None if boundary is None else boundary.bore
 
 
@@ -134,7 +140,7 @@ def needle_boundary(designation: str) -> NeedleBoundary | None:
     (NeedleBoundary(bore=0.04, outside_diameter=0.062, width=0.022), None)
     """
     name = plain_name(designation, NEEDLES)
-    row = _row(name) if name and name[0] != "K" else None
+    row = _row(name) if name and name[0] not in "KH" else None
     if row is None:
         return None
     return NeedleBoundary((row[1] if name[0] == "R" else row[0]) * _MM, row[2] * _MM, row[3] * _MM)
@@ -144,6 +150,7 @@ def needle_designations() -> tuple[str, ...]:
     """Designations that `needle_estimate` knows, machined rings written with NA."""
     return (
         *(f"NA49{bore_code(row[0])}" for row in _MACHINED),
+        *(f"HK{row[0]:02d}{row[1]:02d}" for row in _DRAWN),
         *(f"K{inner}x{outer}x{width}" for inner, outer, width, _ in _CAGES),
     )
 
@@ -161,9 +168,18 @@ def _cage(name: str) -> tuple[float, float, float, float] | None:
     return None
 
 
+def _drawn(name: str) -> tuple[float, float, float, float] | None:
+    """The same of a drawn cup."""
+    for within, width, _, dynamic, static in _DRAWN:
+        if name == f"HK{within:02d}{width:02d}":
+            diameter = needle_diameter(within * _MM, (dynamic, static), DRAWN_QUALITY)
+            return within * _MM, round(2.0 * diameter / _MM) * 0.5 * _MM, width * _MM, float(static)
+    return None
+
+
 def _rings(name: str) -> tuple[float, float, float, float] | None:
     """The same of machined rings."""
-    row = _row(name) if name and name[0] != "K" else None
+    row = _row(name) if name and name[0] not in "KH" else None
     if row is None:
         return None
     _, raceway, _, width, dynamic, static = row
@@ -171,7 +187,7 @@ def _rings(name: str) -> tuple[float, float, float, float] | None:
     return raceway * _MM, round(2.0 * diameter / _MM) * 0.5 * _MM, width * _MM, float(static)
 
 
-def needle_diameter(inner_raceway: float, ratings: tuple[float, float]) -> float:
+def needle_diameter(inner_raceway: float, ratings: tuple[float, float], quality: float = QUALITY) -> float:
     """Diameter of needles by the raceway of the inner ring [m] and C and C0 [N], before it is rounded.
 
     Parameters
@@ -180,8 +196,10 @@ def needle_diameter(inner_raceway: float, ratings: tuple[float, float]) -> float
         F_w [m].
     ratings : (float, float)
         C and C0 [N].
+    quality : float
+        Factor b_m of ISO 281 in them.
     """
     diameter = 0.1 * inner_raceway
     for _ in range(30):  # the pitch diameter knows the needles
-        diameter = by_ratings(inner_raceway + diameter, ratings, FILLED, quality=QUALITY).diameter
+        diameter = by_ratings(inner_raceway + diameter, ratings, FILLED, quality=quality).diameter
     return diameter
