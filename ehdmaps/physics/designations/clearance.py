@@ -50,7 +50,8 @@ _FIT = {CYLINDRICAL: 20e-6, NEEDLE: 20e-6, DEEP_GROOVE: 10e-6}
 class P0 with a bore of 40 mm has 2 to 25 um of interference, of which three quarters arrive at the raceway; rings of
 that bore lose 4 um where the inner one is 5 K warmer."""
 
-# largest diameter [mm]; F6, G6: least and largest deviation of a hole, F8: largest; h5: tolerance of a shaft below its diameter [um]
+# largest diameter [mm]; F6, G6: least and largest deviation of a hole, F8: largest; h5: tolerance of a shaft below its
+# diameter [um]
 _SHAFTS = (
     (10, 13, 22, 5, 14, 35, 6),
     (18, 16, 27, 6, 17, 43, 8),

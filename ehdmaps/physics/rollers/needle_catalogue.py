@@ -64,7 +64,8 @@ def needle_estimate(designation: str, basic_static_rating: float | None = None) 
     Parameters
     ----------
     designation : str
-        NA, RNA, NAV, RNAV of series 49 with bores of 10 to 100 mm; drawn cups HK for shafts of 5 to 50 mm; K with raceways and width in mm.
+        NA, RNA, NAV, RNAV of series 49 with bores of 10 to 100 mm; drawn cups HK for shafts of 4 to 50 mm; K with
+        raceways and width in mm.
     basic_static_rating : float, optional
         C0 [N] of the bearing's own catalogue; else that of the table.
 
@@ -86,8 +87,8 @@ def needle_estimate(designation: str, basic_static_rating: float | None = None) 
             designation,
             "needle bearing",
             needle_designations(),
-            "NA, RNA, NAV, RNAV of series 49 with bores of 10 to 100 mm, such as 'NA4908'; drawn cups such as 'HK2020'; "
-            "cages such as 'K40x48x20'; give others by their dimensions",
+            "NA, RNA, NAV, RNAV of series 49 with bores of 10 to 100 mm, such as 'NA4908'; drawn cups such as 'HK2020'"
+            "; cages such as 'K40x48x20'; give others by their dimensions",
         )
     inner, diameter, width, rating = found
     pitch, own = inner + diameter, basic_static_rating is not None
