@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,7 @@ from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Looked, read_cage_angles, with_bands, write
 from mbs.linearised.linear import peak_places, response_display
+from mbs.linearised.peaks import Linearised, by_laws, peaks_of_modes
 from mbs.output.band_text import (
     DECIDED,
     HEAD,
@@ -36,6 +38,7 @@ from mbs.output.state_space_file import write_spaces
 from mbs.planning.question import at_one_speed
 from mbs.scene.assembly import Model
 from mbs.unknowns.held_open import held_open_of
+from mbs.unknowns.of_modes import banded as may_be_shown
 from mbs.unknowns.of_peaks import PeakBands
 
 MOST_COMPARED_CASES = 8
@@ -64,6 +67,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     for label, entry in found:
         outside += [line for line in outside_at(entry.model, entry.balance) if line not in outside]
         lines += _report(entry, label if found[1:] else "", banded)
+    lines += _by_laws(labels, results) if found[1:] else []
     dataset = judged.marked(results[0].bounded() if banded else lsa_dataset(labels, results))
     lines += [*judged.last, *outside, *write(arguments, dataset, figure)]
     if file := getattr(arguments, "state_space", None):
@@ -159,6 +163,43 @@ def _peak_bands(model: Model, found: LsaResult) -> list[str]:
 def _ends(bands: PeakBands) -> tuple[FloatArray, FloatArray]:
     """Bounds of the levels."""
     return bands.level.low, bands.level.high
+
+
+def _by_laws(labels: Sequence[str], results: Sequence[LsaResult]) -> list[str]:
+    """Tables of the modes of the first law: frequency and height of each response by each law, and its differences."""
+    first, scene = results[0], results[0].model.scene
+    sizes = np.abs(first.responses)
+    seen = may_be_shown(first.modes, float(first.frequencies[-1]))
+    laws = [Linearised(entry.balance, entry.modes) for entry in results]
+    frequencies, heights = by_laws(laws, scene.inputs, scene.sensors, seen)
+    of_peaks, own = peaks_of_modes(first.modes, seen, first.frequencies, sizes)
+    lines = []
+    for s, sensor in enumerate(scene.sensors):
+        for i, entry in enumerate(scene.inputs):
+            display = response_display(sensor, entry)
+            shown = sorted(set(own[(of_peaks[:, 1] == s) & (of_peaks[:, 2] == i)].tolist()))
+            if not shown:
+                continue
+            lines += [
+                f"{sensor.name} ({sensor.quantity}, {display.unit}) by {entry.name}: modes that have a peak by "
+                f"{labels[0]}, and the same by the others, in Hz and as heights, with their differences",
+                f"  {'mode':>4s}  {labels[0]:>19.19s}" + "".join(f"  {label:>37.37s}" for label in labels[1:]),
+            ]
+            for k in shown:
+                frequency, height = frequencies[:, k], display.factor * heights[:, s, i, k]
+                cells = "".join(map(_beside_first, frequency[1:], height[1:], [frequency[0]] * 9, [height[0]] * 9))
+                lines.append(f"  {seen[k] + 1:4d}  {frequency[0]:9.5g} {height[0]:9.3g}{cells}")
+    return lines
+
+
+def _beside_first(frequency: float, height: float, known: float, high: float) -> str:
+    """Frequency and height of a mode by a law, beside those by the first."""
+    if not np.isfinite(frequency):
+        return f"  {'no mode of this shape':>37s}"
+    with np.errstate(divide="ignore", invalid="ignore"):
+        apart = 20.0 * np.log10(height / high)
+    level = f"{apart:+.1f} dB" if np.isfinite(apart) else "-"
+    return f"  {frequency:9.5g} {100.0 * (frequency / known - 1.0):+7.2f} % {height:8.3g} {level:>9s}"
 
 
 def _peaks(model: Model, found: LsaResult) -> list[str]:

@@ -13,23 +13,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.arrays import FloatArray, IntArray
-from mbs.linearised.linear import frequency_response, peak_places
+from mbs.linearised.linear import frequency_response
 from mbs.linearised.modes import Modes, modes
+from mbs.linearised.peaks import highest_beside, peaks_of_modes
 from mbs.model.equilibrium import Equilibrium
 from mbs.scene.assembly import Model
 from mbs.scene.scene import Scene
 from mbs.unknowns.held_open import held_open_of
 from mbs.unknowns.looks import Band, band
 from mbs.unknowns.of_modes import ModeLook, banded, looked_at
-
-_BESIDE = np.linspace(-2.0, 2.0, 9)
-"""Places beside a mode at which its peak is sought, in half-widths of it."""
-
-_WIDE = 3.0
-"""Distance of a peak from its mode in half-widths, at most, or `_NEAR`."""
-
-_NEAR = 0.005
-"""The same as a part of the frequency."""
 
 _CLOSE = 0.3
 """Distance from a top at which its peak is looked at again, in parts of that between frequencies there."""
@@ -85,7 +77,7 @@ def peak_bands(
         What numerics leave open of their levels [dB] at other frequencies [Hz]; None where that is not known.
     """
     chosen = banded(found, float(frequencies[-1]))
-    places, own = _peaks(found, chosen, frequencies, sizes)
+    places, own = peaks_of_modes(found, chosen, frequencies, sizes)
     look = _PeakLook(ModeLook(model, balance, found, chosen[own]), places[:, 1:])
     at = places[:, 0], places[:, 1], places[:, 2]
     values = np.array([frequencies[places[:, 0]], _level(sizes[at])])
@@ -123,32 +115,9 @@ class _PeakLook:
 
     def values(self, balance: Equilibrium, found: Modes) -> FloatArray:
         """Peaks of the modes of a system."""
-        frequency, ratio = self.modes.paired(balance, found)
-        there = np.isfinite(frequency)
-        beside = frequency[:, None] * (1.0 + ratio[:, None] * _BESIDE)
-        values = np.full((2, frequency.size), np.nan)
-        if not there.any():
-            return values
-        scene = self.modes.model.scene
-        response = np.abs(frequency_response(balance, scene.inputs, scene.sensors, beside[there].reshape(-1)))
-        for row, k in enumerate(np.flatnonzero(there)):
-            sizes = response[row * _BESIDE.size : (row + 1) * _BESIDE.size, self.of[k, 0], self.of[k, 1]]
-            highest = int(np.argmax(sizes))
-            values[:, k] = beside[k, highest], _level(sizes[highest])
-        return values
-
-
-def _peaks(found: Modes, chosen: IntArray, frequencies: FloatArray, sizes: FloatArray) -> tuple[IntArray, IntArray]:
-    """Peaks that belong to a mode, shape (peaks, 3), and the place of its mode among the chosen ones."""
-    places, own = [], []
-    frequency, ratio = found.frequency[chosen], found.damping_ratio[chosen]
-    for sensor, entry in np.ndindex(sizes.shape[1:]):
-        for k in peak_places(sizes[:, sensor, entry]).tolist():
-            apart = np.abs(frequency / frequencies[k] - 1.0)
-            if apart.size and apart.min() <= max(_WIDE * ratio[int(np.argmin(apart))], _NEAR):
-                places.append((k, sensor, entry))
-                own.append(int(np.argmin(apart)))
-    return np.array(places, dtype=np.int64).reshape(-1, 3), np.array(own, dtype=np.int64)
+        scene, modes_there = self.modes.model.scene, self.modes.paired(balance, found)
+        values = highest_beside(balance, scene.inputs, scene.sensors, (modes_there[0], modes_there[1]), self.of)
+        return np.array([values[0], _level(values[1])])
 
 
 def _tops(

@@ -173,6 +173,29 @@ def test_linear_analysis_with_rollers_as_bodies(here, capsys, formula_maps):
     assert "contacts lift off, a linear analysis is not valid there" in out
 
 
+def test_linear_analysis_of_several_laws_ends_with_their_peaks(here, capsys):
+    """Heights are the largest of the written responses within two half-widths of the eigenvalues of the matrices."""
+    laws = ("--law", "hertz:1.25e-5 s", "--law", "formula", "--films", "slow")
+    status, out, _ = run(capsys, "lsa", "nu308_rigid", *laws, "-o", "l.nc")
+    assert status in (0, 1)
+    table = re.search(r"^S1 .* by E1: modes that have a peak by dry Hertz.*\n.*\n((?:  +\d+ .*\n)+)", out, re.MULTILINE)
+    rows = [line.replace("%", "").replace("dB", "").split() for line in table[1].splitlines()]
+    assert len(rows) == 4
+    with xr.open_dataset("l.nc") as data:
+        size = np.hypot(data["response_real"], data["response_imaginary"]).sel(sensor="S1", input="E1").values
+        frequency = data["frequency"].values
+        eigenvalues = [np.linalg.eigvals(data["A"].values[law]) for law in (0, 1)]
+    for row in rows[1:]:  # the first stands beside that of the other plane
+        first, height, other, part, its_height, level = map(float, row[1:])
+        for law, (at, told) in enumerate(((first, height), (other, its_height))):
+            poles = eigenvalues[law][eigenvalues[law].imag > 0.0]
+            pole = poles[np.argmin(np.abs(np.abs(poles) / (2.0 * np.pi * at) - 1.0))]
+            beside = np.abs(frequency / at - 1.0) < -2.02 * pole.real / abs(pole)
+            assert size[law][beside].max() == pytest.approx(told, rel=0.03)
+        assert part == pytest.approx(100.0 * (other / first - 1.0), abs=0.02)
+        assert level == pytest.approx(20.0 * np.log10(its_height / height), abs=0.1)
+
+
 def short_run(here, **changes):
     text = read_scene("nu308_rigid").text.replace('duration = "0.2 s"', 'duration = "2 ms"')
     for old, new in changes.items():
