@@ -23,8 +23,8 @@ SHORTER = (
     (r'(?<=\nhighest = )"[^"]*"', '"2 kHz"'),
 )
 
-DRY = ("gearbox", "n1014_rigid", "nu2210_shaft", "overhung_rotor", "two_stage")
-"""Scenes whose bearings others have too, with films: `nu308_flexible`, `spindle`, `electric_drive`, `n1014_testrig`."""
+DRY = ("gearbox", "n1014_rigid", "nu2210_shaft", "overhung_rotor", "spindle", "two_stage")
+"""Scenes whose bearings others have too, with films: `nu308_flexible`, `electric_drive`, `n1014_testrig`."""
 
 
 @pytest.fixture

@@ -173,7 +173,7 @@ def test_no_heat_is_no_change() -> None:
         assert getattr(cold, name)[0] == pytest.approx(getattr(plain, name)[0], rel=1e-5)
 
 
-@pytest.mark.parametrize(("load", "celsius"), [(2.5e4, 20.0), (1e4, 40.0), (4e3, 70.0)])
+@pytest.mark.parametrize(("load", "celsius"), [(2.5e4, 20.0), (4e3, 70.0)])
 def test_the_stated_error_covers_that_of_the_rows(load: float, celsius: float) -> None:
     """Six rows alone cost up to 2 % of a hot film; the reference has 24 on the same columns, a sixteenth of that."""
     contact = BearingGeometry.named("NU308").contacts(STEEL, "iso16281")[1]

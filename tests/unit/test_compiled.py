@@ -123,10 +123,9 @@ def _own(module):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("home", [{"HOME": "/dev/null/home"}, {"HOME": ""}], ids=["not a folder", "empty"])
-def test_without_a_folder_for_caches_code_is_kept_among_temporary_files(site, tmp_path, home):
+def test_without_a_folder_for_caches_code_is_kept_among_temporary_files(site, tmp_path):
     (tmp_path / "tmp").mkdir()
-    where = {**home, "XDG_CACHE_HOME": "/dev/null/cache", "TMPDIR": str(tmp_path / "tmp")}
+    where = {"HOME": "/dev/null/home", "XDG_CACHE_HOME": "/dev/null/cache", "TMPDIR": str(tmp_path / "tmp")}
     found, told = outer(site, tmp_path, **where)
     assert found == ["3.0", "0"]
     (folder,) = (tmp_path / "tmp").iterdir()

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cases.programs import needed
+from tests.cases.programs import needed, quick_compiler
 
 ROOT = Path(__file__).parents[2]
 TOLD = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
@@ -175,7 +175,8 @@ def test_a_build_asks_for_a_compiler_only_where_there_is_none(monkeypatch, tmp_p
     assert [ask() for ask in asks] == [["setuptools' own", "ziglang>=0.13,<1"]] * 2
 
 
-def test_the_library_is_built_into_a_folder(setup, tmp_path):
+def test_the_library_is_built_into_a_folder(setup, tmp_path, monkeypatch):
+    monkeypatch.setenv("CC", quick_compiler(tmp_path))
     (tmp_path / "ehdmaps" / "kernel").mkdir(parents=True)
     path = setup.build_library(tmp_path)
     assert path.parent == tmp_path / "ehdmaps" / "kernel" and os.access(path, os.R_OK)

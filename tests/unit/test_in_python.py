@@ -13,10 +13,8 @@ from ehdmaps.ehl.dense import factorised, solved
 BEARING = ("bearing", "NU308", "--load", "5 kN", "--speed", "500 rpm", "--slices", "5", "--law")
 COMMANDS = (
     (*BEARING, "map", "--map", "MAP"),
-    ("statics", "nu308_rigid", "--law", "hertz:1.25e-5 s"),
-    ("bearing", "6208", "--load", "2 kN", "--speed", "1500 rpm"),
+    ("bearing", "6208", "--load", "2 kN", "--speed", "1500 rpm", "--bands", "numerics"),
     ("bearing", "32208", "--load", "2 kN", "--axial", "1 kN", "--speed", "1500 rpm", "--bands", "numerics"),
-    ("lsa", "spindle", "--bands", "numerics"),
     ("sweep", "nu308_rigid", "--speed", "500 rpm", "900 rpm", "2", "--bands", "numerics"),
 )
 """Kinds of bearings and of commands, with films of maps and of the film table; runs in time load nothing more."""

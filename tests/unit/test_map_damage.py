@@ -289,7 +289,7 @@ DAMAGES = {
     ),
     **{
         f"{name}: {what}": (set_attribute(name, text), f"attribute {name}: does not read .*generate the map again")
-        for name in JSON
+        for place, name in enumerate(JSON)
         for what, text in {
             "no JSON": "not JSON",
             "nested": DEEP,
@@ -298,6 +298,7 @@ DAMAGES = {
             "huge": '{"name": 1e999, "radius": 1' + 400 * "0" + "}",
             "control": '{"name": "\\u001b[2J"}',
         }.items()
+        if place == 0 or what in ("no JSON", "huge")
     },
     **{f"{name}: of numbers": (set_attribute(name, 3.5), f"attribute {name} is .*3.5") for name in JSON},
     "radius of text": (record("contacts", lambda r: [r[0] | {"radius": "5 mm"}, r[1]]), "contacts: does not read"),

@@ -659,11 +659,11 @@ PINNED = tuple(f"{end}.{freedom}" for end in ("left", "right") for freedom in ("
 @pytest.mark.slow
 def test_a_cone_is_the_limit_of_many_short_cylinders():
     speed, disc = 3000.0, Disc(0.3, Inertia(1.0, 1e-3, 6e-4))
-    found = whirls(shaft([CONE], [disc], largest_element=0.0025), speed, PINNED)
+    found = whirls(shaft([CONE], [disc], largest_element=0.01), speed, PINNED)
     found = np.sort(found[np.argsort(np.abs(found))][:6])
     errors = []
     for count in (20, 40):
-        values = whirls(shaft(cone_pieces(CONE, count), [disc], largest_element=0.0025), speed, PINNED)
+        values = whirls(shaft(cone_pieces(CONE, count), [disc], largest_element=0.01), speed, PINNED)
         errors.append(np.abs(np.sort(values[np.argsort(np.abs(values))][:6]) / found - 1.0))
     coarse, fine = errors
     # Steps have an error of second order in their length; both have the elements of the cone.
