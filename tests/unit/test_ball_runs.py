@@ -13,6 +13,7 @@ from mbs import assemble, parse_scene, read_scene, statics
 from mbs.bearings.balls.ball_block import BALLS, BallBlock
 from mbs.bearings.locating.locating_block import FELT
 from mbs.bearings.locating.locating_element import LocatingStates
+from mbs.bearings.locating.locating_force import LAST
 from mbs.bearings.locating.normal_law import contact
 from mbs.model.blocks import FOUND, Member, Moment
 from mbs.model.elements import Operation
@@ -35,7 +36,7 @@ def drive(law):
 
 def states_of(element):
     """States before the first step."""
-    return LocatingStates(0.0, np.zeros((element.force.geometry.balls, 4)), 0.0, 0.0, 0.0)
+    return LocatingStates(0.0, np.zeros((element.force.geometry.balls, LAST)), 0.0, 0.0, 0.0)
 
 
 def answers(block, speeds, step, angle, place=PLACE, rate=RATE):
@@ -231,10 +232,12 @@ def test_passing_balls_shake_at_their_order():
 
 
 @pytest.mark.slow
-def test_energy_of_a_run_closes():
+@pytest.mark.parametrize("hypothesis", ["outer race control", "inner race control"])
+def test_energy_of_a_run_closes(hypothesis):
     """Balls lift off and come back in a run-up: work is what contacts store, dampers take, and cage and speed bring in,
     to the trapezoidal rule. That is of second order: a fourth of the step leaves a sixteenth."""
-    machine = assemble(parse_scene(text(left='diametral_clearance = "12 um"'), "rotor", "rotor.toml"), LAW)
+    left = f'diametral_clearance = "12 um"\ngeometry = {{ hypothesis = "{hypothesis}" }}'
+    machine = assemble(parse_scene(text(left=left), "rotor", "rotor.toml"), LAW)
     rest = equilibrium(machine.system, Operation(300.0))
     start = rest.displacement + 4e-6 * (np.arange(rest.displacement.size) == 1)
     course, left = SpeedProfile.ramp(300.0, 900.0, 0.04), []

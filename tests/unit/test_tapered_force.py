@@ -14,6 +14,7 @@ from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.laws import dry_law
 from mbs.bearings.locating import locating_element
 from mbs.bearings.locating.locating_element import LocatingElement
+from mbs.bearings.locating.locating_force import LAST
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.model.elements import Operation
 
@@ -86,7 +87,7 @@ def test_what_ring_and_speed_do_is_stored(force) -> None:
     turn, speeds = np.linspace(0.0, 2.6, 401), (1200.0, 0.0)
     path = np.zeros((turn.size, 6))
     path[:, 0], path[:, 1], path[:, 5] = 25e-6 * np.cos(turn), 8e-6 * np.sin(2.0 * turn), 1e-4 * np.sin(turn)
-    last, forces, works, stored = np.zeros((force.angles.size, 4)), [], [], []
+    last, forces, works, stored = np.zeros((force.angles.size, LAST)), [], [], []
     for pose in path:
         forces.append(force(pose, inner_speed=speeds[0])[0])
         works.append(force.work(speeds, last))

@@ -188,23 +188,23 @@ def mean_speed(balls: FloatArray, idle: float) -> float:
 @functools.cache
 def _work() -> Callable[..., float]:
     """Work of the loads by speed, in C."""
-    place, number = ctypes.c_void_p, ctypes.c_double
-    return function("ehd_ball_speed_work", ctypes.c_int64, place, number, place, result=number)
+    place = ctypes.c_void_p
+    return function("ehd_ball_speed_work", ctypes.c_int64, place, place, place, result=ctypes.c_double)
 
 
-def speed_work(balls: FloatArray, arm: float, last: FloatArray) -> float:
+def speed_work(balls: FloatArray, shape: ctypes.Structure, last: FloatArray) -> float:
     """Work of the centrifugal loads and tractions on the balls since the last call [J], by the trapezoidal rule.
 
     Parameters
     ----------
     balls : array (Z, COLUMNS)
         Rows of all balls.
-    arm : float
-        Distance of the outer groove's centre and the centre of a ball that touches it [m].
-    last : array (Z, 4)
-        Centres [m] and forces [N] of the last call, axial and radial; written.
+    shape : Structure
+        Lengths of the bearing, in C.
+    last : array (Z, LAST)
+        Centres from both grooves [m] and forces [N] of the last call, axial and radial; written.
     """
-    return _work()(balls.shape[0], balls.ctypes.data, arm, last.ctypes.data)
+    return _work()(balls.shape[0], balls.ctypes.data, ctypes.addressof(shape), last.ctypes.data)
 
 
 def inner_share(drive: Drive, loads: Any) -> tuple[Any, Any]:

@@ -19,6 +19,7 @@ from ehdmaps.kernel.record import Record, integers, numbers, room
 from mbs.bearings.locating.film_memory import FilmsInTime, no_memory, rows_of
 from mbs.bearings.locating.film_tables import FilmCourse, FilmData
 from mbs.bearings.locating.locating_element import LocatingElement, LocatingStates
+from mbs.bearings.locating.locating_force import LAST
 from mbs.model.blocks import Member
 
 FELT = np.array([0, 1, 2, 4, 5])
@@ -40,7 +41,7 @@ class PairBlock(Record):
         Angle of its first rolling element [rad], cage angle by that of the system, axial offset [m].
     powers : array (count, 2)
         What it dissipates, and what the turning cage brings in [W].
-    last, times, works : array (count, longest, 4), (count,), (count,)
+    last, times, works : array (count, longest, LAST), (count,), (count,)
         What `LocatingForce.work` keeps of the last step, its time [s], and its work by that time [W].
     memories, memory : array (count,), of int, (numbers,)
         First number of the memory of a bearing, < 0 without one; memory of the contacts of all bearings,
@@ -63,7 +64,7 @@ class PairBlock(Record):
         **dict.fromkeys(("firsts", "places", "films_of", "counts", "slices", "memories"), ("count",)),
         **dict.fromkeys(("starts", "turns", "offsets", "times", "works"), ("count",)),
         "powers": ("count", 2),
-        "last": ("count", "longest", 4),
+        "last": ("count", "longest", LAST),
         "clock": (2,),
     }
 

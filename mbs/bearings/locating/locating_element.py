@@ -20,7 +20,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, EhdmapsError
 from ehdmaps.units import RPM
 from mbs.bearings.locating.film_memory import FilmsInTime
-from mbs.bearings.locating.locating_force import Settled
+from mbs.bearings.locating.locating_force import LAST, Settled
 from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers, check_apart
 from mbs.model.findings import Cause, Finding, Gauge
 from mbs.model.relaxation import Films, Relaxation
@@ -43,7 +43,7 @@ class LocatingStates(NamedTuple):
     ----------
     time : float
         End of the step [s].
-    last : array, shape (Z, 4)
+    last : array, shape (Z, LAST)
         What `LocatingForce.work` keeps of it.
     dissipated, driven : float
         What contacts take up, and what cage and speed bring in [W].
@@ -299,7 +299,7 @@ class LocatingElement(OnRings):
             answer = self.evaluate(displacement, velocity, operation)
         finally:
             force.held = None
-        last = np.zeros((force.angles.size, 4)) if states is None else states.last.copy()
+        last = np.zeros((force.angles.size, LAST)) if states is None else states.last.copy()
         work = force.work((conditions["inner_speed"], conditions["outer_speed"]), last)
         if self.relaxes:
             films = FilmsInTime.at_rest(force) if films is None else films.after(step, force)

@@ -25,6 +25,9 @@ from mbs.model.findings import CARRIES, Cause, Finding
 if TYPE_CHECKING:
     from mbs.life import ReferenceLife
 
+LAST = 8
+"""Numbers that `LocatingForce.work` keeps of a rolling element: places, and then the loads on them."""
+
 FASTEST = 2e4
 """Largest accepted speed of a ring [rad/s]; 1e5 rpm is half of it."""
 
@@ -320,7 +323,7 @@ class LocatingForce:
         ----------
         speeds : (float, float)
             Speeds of the rings [rad/s].
-        last : array (Z, 4)
+        last : array (Z, LAST)
             What is kept of the last call; written.
         """
         raise NotImplementedError

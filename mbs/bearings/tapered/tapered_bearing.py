@@ -331,7 +331,7 @@ def place_work(rollers: FloatArray, loads: tuple[float, float], last: FloatArray
         Numbers of the rollers, see `mbs.bearings.tapered.kernel_structs`.
     loads : (float, float)
         Centrifugal load [N], and moment [N m].
-    last : array (Z, 4)
+    last : array (Z, LAST)
         Places of the last call, radial [m] and turned [rad], and its loads; written.
     """
     given = np.array(loads)

@@ -101,19 +101,24 @@ void ehd_ball_block_accept(void *data, const ehd_moment *at) {
     pair_made(&of->all, at);
 }
 
-/* Work of the centrifugal loads and tractions on balls since the last call [J], by the trapezoidal rule; arm: of the outer
- * groove's centre and that of a ball that touches it; last (balls, 4): centres [m] and forces [N] then, written. */
-double ehd_ball_speed_work(int64_t balls, const ehd_ball_found *found, double arm, double *last) {
+/* Work of the centrifugal loads and tractions on balls since the last call [J], by the trapezoidal rule; last (balls, 8):
+ * centres v, -(d - v) [m], and the forces then on each [N], written. Traction at the inner raceway is a force on the ring,
+ * too, whose work is counted there: what is left of it goes with d - v. */
+double ehd_ball_speed_work(int64_t balls, const ehd_ball_found *found, const ehd_ball_shape *shape, double *last) {
     double work = 0.0;
-    for (int64_t j = 0; j < balls; j++, last += 4) {
-        const double reach = arm + found[j].approach[1], sine = found[j].outer[0], t = found[j].traction;
-        const double x = reach * sine, r = reach * found[j].outer[1];
-        const double along = -t * found[j].outer[1], outward = found[j].centrifugal + t * sine;
-        work += 0.5 * ((along + last[2]) * (x - last[0]) + (outward + last[3]) * (r - last[1]));
-        last[0] = x;
-        last[1] = r;
-        last[2] = along;
-        last[3] = outward;
+    for (int64_t j = 0; j < balls; j++, last += 8) {
+        const ehd_ball_found *of = &found[j];
+        const double reach = shape->outer_arm + of->approach[1], back = -(shape->inner_arm + of->approach[0]);
+        const double now[8] = {reach * of->outer[0],
+                               reach * of->outer[1],
+                               back * of->inner[0],
+                               back * of->inner[1],
+                               -of->traction * of->outer[1],
+                               of->centrifugal + of->traction * of->outer[0],
+                               of->inner_traction * of->inner[1],
+                               -of->inner_traction * of->inner[0]};
+        for (int i = 0; i < 4; i++) work += 0.5 * (now[4 + i] + last[4 + i]) * (now[i] - last[i]);
+        memcpy(last, now, sizeof now);
     }
     return work;
 }
@@ -127,7 +132,7 @@ void ehd_ball_block_powers(void *data, const ehd_moment *at, const double *motio
         const int64_t row = b * of->all.longest;
         const double step = at->time - of->all.times[b];
         const double work =
-            ehd_ball_speed_work(of->all.counts[b], of->rows + row, of->lengths[b].outer_arm, of->all.last + 4 * row);
+            ehd_ball_speed_work(of->all.counts[b], of->rows + row, of->lengths + b, of->all.last + 8 * row);
         of->all.times[b] = at->time;
         of->all.works[b] = step > 0.0 ? work / step : 0.0;
         out[3 * of->all.places[b]] = of->all.powers[2 * b];

@@ -50,7 +50,7 @@ typedef struct ehd_pair_block {
     const int64_t *counts, *slices;            /* (count,): rolling elements; slices of a contact, 1 of points */
     const double *starts, *turns, *offsets; /* angle of the first one [rad], cage by system, axial offset [m] */
     double *powers;                         /* (count, 2): what it dissipates, what the turning cage brings in [W] */
-    double *last;                           /* (count, longest, 4): places and loads of the last step, see speed_work */
+    double *last;                           /* (count, longest, 8): places and loads of the last step, see speed_work */
     double *times, *works;                  /* (count,): its time [s], work of speed by then [W] */
     const int64_t *memories;                /* (count,): where a bearing's memory begins; < 0 without one */
     double *memory;                         /* memory of the contacts of all bearings, see pair_law.h */

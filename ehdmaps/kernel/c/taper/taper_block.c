@@ -24,10 +24,10 @@ typedef struct ehd_taper_block {
 EHD_SIZE_OF(ehd_taper_block)
 
 /* Work of centrifugal loads and gyroscopic moments (2,) on rollers since the last call [J], by the trapezoidal rule;
- * last (rollers, 4): places of that call, radial [m] and turned [rad], and its loads [N], [N m]; written. */
+ * last (rollers, 8): places of that call, radial [m] and turned [rad], and its loads [N], [N m]; written. */
 double ehd_taper_speed_work(int64_t count, const ehd_taper_roller *rollers, const double *loads, double *last) {
     double work = 0.0;
-    for (int64_t j = 0; j < count; j++, last += 4)
+    for (int64_t j = 0; j < count; j++, last += 8)
         for (int i = 0; i < 2; i++) {
             const double place = rollers[j].place[1 + i];
             work += 0.5 * (loads[i] + last[2 + i]) * (place - last[i]);
@@ -81,7 +81,7 @@ void ehd_taper_block_accept(void *data, const ehd_moment *at) {
         const ehd_taper_roller *rollers = of->rollers + b * of->all.longest;
         const double square = at->speed * at->speed, step = at->time - of->all.times[b];
         const double loads[2] = {of->loads[2 * b] * square, of->loads[2 * b + 1] * square};
-        const double work = ehd_taper_speed_work(bearing->rollers, rollers, loads, of->all.last + 4 * b * of->all.longest);
+        const double work = ehd_taper_speed_work(bearing->rollers, rollers, loads, of->all.last + 8 * b * of->all.longest);
         of->all.times[b] = at->time;
         of->all.works[b] = step > 0.0 ? work / step : 0.0;
         if (of->all.memories[b] >= 0) {
