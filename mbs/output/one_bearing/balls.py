@@ -176,7 +176,8 @@ def _moving(at: Settled) -> list[str]:
     slip, spin = (np.where(carries, np.abs(values), 0.0).max(axis=1) for values in (motion.slip, motion.spin))
     return [
         f"  cage {RPM.text(at.loads.cage_speed)}; slip up to {no_dust(slip[0]):.3g} m/s inner, {no_dust(slip[1]):.3g} "
-        f"outer; spin up to {no_dust(spin[0]):.4g} rad/s inner, {no_dust(spin[1]):.4g} outer"
+        f"outer; spin up to {no_dust(spin[0]):.4g} rad/s inner, {no_dust(spin[1]):.4g} outer; gyroscopic traction up "
+        f"to {at.loads.gyroscopic_traction:.2g} of the load"
     ]
 
 
