@@ -57,7 +57,7 @@ class Identified:
 
     @cached_property
     def bands(self) -> FloatArray:
-        """Lower and upper ends of the bands [SI], shape (2, unknowns), within the ranges of what can be."""
+        """Lower and upper ends of the bands [SI], shape (2, unknowns)."""
         at = self.fit.question.coordinates(self.fit.parts)
         ends = at - self.certainty.fall, at + self.certainty.rise
         return np.array([[one.value(x) for one, x in zip(self.free, end, strict=True)] for end in ends])
