@@ -19,6 +19,7 @@ elementary.h                  logarithm and exponential for loops of vector inst
 status.[hc]                   what calls find, and how it is called
 law/law.[hc]                  contact law over approach, rate, speed and temperature: tables, points, ends
 law/cells.c                   cells of tables that are the binary digits of a number
+law/law_block.c               the law at rest at a block of places, for vector instructions
 law/law_many.[hc]             the law at many places, in blocks for vector instructions, and at one for Python
 law/film_lines.[hc]           films of a table, read at many points, and nodes of a law's table
 law/rough.[hc]                load sharing of film and asperities

@@ -138,7 +138,7 @@ class BearingForce:
     Notes
     -----
     A call is for one pose; `evaluate` says besides whether it was outside the map. Speed, temperature and centrifugal
-    load may change from call to call, which costs some 20 microseconds more, 50 with a centrifugal load; `at` gives the
+    load may change from call to call, which costs some 10 microseconds more, 30 with a centrifugal load; `at` gives the
     element at fixed ones. Both give the same numbers. An object is for one thread.
     """
 

@@ -333,7 +333,6 @@ class Arrays(LawRoom):
             states=self._states,
             place=np.zeros(slices + 1),
             row=np.zeros(slices + 1, dtype=np.int64),
-            stride=4 * slices,
         )
         self.coupling = coupling
         self.own: FloatArray | None = None
@@ -352,11 +351,12 @@ class Arrays(LawRoom):
         Load w [N/m], dw/d approach, damping c [N s/m2], dc/d approach; the slopes are to be multiplied by that of the
         law. Where the law is called for each slice they are those at its rate.
         """
-        self._work.whole = 1
+        work = self._work
+        work.whole, work.stride = 1, 4 * self.shape.slices
         try:
             functions().force(self.call.address)
         finally:
-            self._work.whole = 0
+            work.whole = work.stride = 0
         return np.ascontiguousarray(self._states.transpose(3, 1, 0, 2)).reshape(4, *self._states.shape[::2])
 
     def rollers(self) -> FloatArray:

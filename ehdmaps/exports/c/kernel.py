@@ -241,7 +241,7 @@ def kernel_files(emap: EHDMap, options: KernelOptions, header: Sequence[str]) ->
     facades = ["law_facade"]
     if bearing is not None:
         parts = [f"cylinder/{part}" for part in ("cylinder_law", "cylinder", "cylinder_films")]
-        heads, bodies = heads + parts, bodies + parts
+        heads, bodies = heads + parts, [*bodies, "law/law_block", *parts]
         facades += ["bearing_facade"]
     guard = "EHD_H"
     top = [

@@ -28,6 +28,7 @@
 #include "status.c"
 #include "law/law.c"
 #include "law/cells.c"
+#include "law/law_block.c"
 #include "law/law_many.c"
 EHD_SIZE_OF(ehd_law_data)
 EHD_SIZE_OF(ehd_law_errand)

@@ -6,6 +6,13 @@
 
 #define NO_APPROACH 1e-30
 
+/* Slices whose sums are kept apart, so that they are added at once: compilers must not change the order of additions. */
+#ifdef EHD_NUMBER
+#define LANES 8
+#else
+#define LANES 2 /* what exports write may be compiled without vector instructions */
+#endif
+
 /* First digits of a = 1 and -1, less the rows of their cells. */
 #define FIRST_ABOVE (UINT64_C(0x3ff) << CELL_BITS)
 #define FIRST_BELOW ((UINT64_C(0xbff) << CELL_BITS) - EHD_ROWS)
@@ -30,6 +37,11 @@ typedef struct slices {
 typedef struct sums {
     double w[2], k[3], c[3];
 } sums;
+
+/* The same by lanes, and the lowest of w + 2 c rate, with zero. */
+typedef struct lanes {
+    double w0[LANES], w1[LANES], k0[LANES], k1[LANES], k2[LANES], c0[LANES], c1[LANES], c2[LANES], lowest[LANES];
+} lanes;
 
 static const sums NO_SUMS = {{0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
 
@@ -130,7 +142,7 @@ static void power_states(const ehd_cylinder *bearing, const ehd_cylinder_numbers
 
 /* Where slices are in cells around a centre. The sign of z goes with 1 + |z|, so that nothing branches; two slices at a
  * time, as compilers put into vector instructions without being asked. */
-static void find_cells(const ehd_cylinder *bearing, const ehd_cylinder_numbers *law, const roller *r, const slices *s) {
+EHD_CLONES static void find_cells(const ehd_cylinder *bearing, const ehd_cylinder_numbers *law, const roller *r, const slices *s) {
     const double inverse = law->inverse_scale, start = (r->gap - law->centre) * inverse, tilt = r->tilt * inverse;
     const double *restrict position = bearing->position, *restrict profile = bearing->profile;
     double *restrict place = s->place;
@@ -175,11 +187,14 @@ static void read_cells(const double *cells, const slices *s) {
     const int64_t count = s->count;
     for (int64_t i = 0; i < count; i++) {
         const double *restrict cell = cells + 8 * row[i], t = place[i];
-        for (int f = 0; f < 2; f++) {
-            const double bend = cell[4 + f] + t * cell[6 + f], mean = cell[2 + f] + t * bend;
-            value[2 * i + f] = cell[f] + t * mean;
-            slope[2 * i + f] = mean + t * (bend + t * cell[6 + f]);
-        }
+        /* nothing is read again after it is written */
+        const double high = t * cell[6], bend = cell[4] + high, mean = cell[2] + t * bend;
+        const double other_high = t * cell[7], other_bend = cell[5] + other_high, other_mean = cell[3] + t * other_bend;
+        const double w = cell[0] + t * mean, c = cell[1] + t * other_mean;
+        value[2 * i] = w;
+        value[2 * i + 1] = c;
+        slope[2 * i] = mean + t * (bend + high);
+        slope[2 * i + 1] = other_mean + t * (other_bend + other_high);
     }
 }
 
@@ -216,13 +231,39 @@ static int law_states(const ehd_cylinder *bearing, const ehd_law_point *point, r
     return status;
 }
 
-/* States of the slices of a roller. Where it is level they are the same on both sides. */
+/* Where a roller is level, its slices are the same on both sides. */
+static void mirror(const ehd_cylinder *bearing, const roller *r, slices *s) {
+    if (!bearing->symmetric || r->tilt != 0.0 || r->tilt_rate != 0.0) return;
+    s->mirrored = 1;
+    s->count = (bearing->slices + 1) / 2;
+}
+
+/* Make the cells of a table that all slices of a bearing need and that are not there yet. */
+static void grow_cells(const ehd_cylinder *bearing, const ehd_cylinder_law *law, const ehd_ring_motion *motion,
+                       const ehd_cylinder_work *work) {
+    unsigned char *made = CELL_MARKS(law);
+    int lowest = EHD_NODES, highest = 0;
+    for (int64_t j = 0; j < bearing->rollers; j++) {
+        const roller r = roller_of(bearing, motion, j);
+        slices s = roller_slices(bearing, work, j);
+        if (r.deepest <= law->numbers->lift_off) continue;
+        mirror(bearing, &r, &s);
+        find_cells(bearing, law->numbers, &r, &s);
+        for (int64_t i = 0; i < s.count; i++) {
+            if (made[s.row[i]] != UNKNOWN) continue;
+            const int low = node_of_row((int)s.row[i]);
+            made[s.row[i]] = WANTED;
+            lowest = low < lowest ? low : lowest;
+            highest = low >= highest ? low + 1 : highest;
+        }
+    }
+    if (lowest < highest) make_cells(law, lowest, highest);
+}
+
+/* States of the slices of a roller. */
 static int states_of(const ehd_cylinder *bearing, const ehd_cylinder_law *law, roller *r, slices *s) {
     const int kind = (int)law->numbers->kind;
-    if (bearing->symmetric && r->tilt == 0.0 && r->tilt_rate == 0.0) {
-        s->mirrored = 1;
-        s->count = (bearing->slices + 1) / 2;
-    }
+    mirror(bearing, r, s);
     if (kind == EHD_BY_SLICES) return law_states(bearing, law->point, r, s);
     if (kind == EHD_POWER) {
         power_states(bearing, law->numbers, r, s);
@@ -231,54 +272,52 @@ static int states_of(const ehd_cylinder *bearing, const ehd_cylinder_law *law, r
             find_cells(bearing, law->numbers, r, s);
         else
             find_knots(bearing, law->knots, r, s);
-        if (law->grows)
-            for (int64_t i = 0; i < s->count; i++) make_cell(law, s->row[i]);
         read_cells(law->cells, s);
     }
     return r->deepest > law->numbers->safe_approach ? hold(bearing, law->numbers, r, s) : EHD_OK;
 }
 
+/* Add neighbouring slices, from number i on, to sums of their own: as many as are given, LANES or one. */
+EHD_INLINE void add_slices(const ehd_cylinder *bearing, const roller *r, const slices *s, int64_t i, int given,
+                           lanes *of) {
+    const double *position = bearing->position + i, *value = s->value[i], *slope = s->slope[i];
+    for (int l = 0; l < given; l++) {
+        const double x = position[l], c = value[2 * l + 1], rate = r->rate + x * r->tilt_rate, part = c * rate;
+        const double w = value[2 * l] + part, k = slope[2 * l] + slope[2 * l + 1] * rate, kx = k * x, cx = c * x;
+        of->w0[l] += w;
+        of->w1[l] += w * x;
+        of->k0[l] += k;
+        of->k1[l] += kx;
+        of->k2[l] += kx * x;
+        of->c0[l] += c;
+        of->c1[l] += cx;
+        of->c2[l] += cx * x;
+        of->lowest[l] = least(w + part, of->lowest[l]);
+    }
+}
+
 /* Sums over the slices of a roller that all have c rate >= -w/2, where the rule of the damping is linear: load
- * w + c rate, stiffness dw + dc rate, damping c. Slices at the same distance from the middle go together. Returns
- * whether all are so. */
-static int moderate_sums(const ehd_cylinder *bearing, const roller *r, const slices *s, sums *sum) {
-    const int64_t half = bearing->slices / 2, last = bearing->slices - 1;
-    double w0 = 0.0, w1 = 0.0, k0 = 0.0, k1 = 0.0, k2 = 0.0, c0 = 0.0, c1 = 0.0, c2 = 0.0, lowest = 0.0;
-    if (bearing->slices % 2) {
-        const double *value = s->value[half], *slope = s->slope[half], part = value[1] * r->rate;
-        w0 = value[0] + part;
-        k0 = slope[0] + slope[1] * r->rate;
-        c0 = value[1];
-        lowest = least(w0 + part, lowest);
+ * w + c rate, stiffness dw + dc rate, damping c. Returns whether all are so. */
+EHD_CLONES static int moderate_sums(const ehd_cylinder *bearing, const roller *r, const slices *s, sums *sum) {
+    const int64_t count = bearing->slices, whole = count - count % LANES;
+    double lowest = 0.0;
+    lanes of;
+    for (int l = 0; l < LANES; l++) /* compilers fill what is initialised by slow instructions */
+        of.w0[l] = of.w1[l] = of.k0[l] = of.k1[l] = of.k2[l] = of.c0[l] = of.c1[l] = of.c2[l] = of.lowest[l] = 0.0;
+    for (int64_t i = 0; i < whole; i += LANES) add_slices(bearing, r, s, i, LANES, &of);
+    for (int64_t i = whole; i < count; i++) add_slices(bearing, r, s, i, 1, &of);
+    *sum = NO_SUMS;
+    for (int l = 0; l < LANES; l++) {
+        sum->w[0] += of.w0[l];
+        sum->w[1] += of.w1[l];
+        sum->k[0] += of.k0[l];
+        sum->k[1] += of.k1[l];
+        sum->k[2] += of.k2[l];
+        sum->c[0] += of.c0[l];
+        sum->c[1] += of.c1[l];
+        sum->c[2] += of.c2[l];
+        lowest = least(lowest, of.lowest[l]);
     }
-    for (int64_t i = 0; i < half; i++) {
-        const double *value = s->value[i], *right_value = s->value[last - i];
-        const double *slope = s->slope[i], *right_slope = s->slope[last - i];
-        const double x = bearing->position[i], xx = x * x, change = x * r->tilt_rate;
-        const double rate = r->rate + change, part = value[1] * rate;
-        const double right_rate = r->rate - change, right_part = right_value[1] * right_rate;
-        const double w = value[0] + part, k = slope[0] + slope[1] * rate;
-        const double right_w = right_value[0] + right_part, right_k = right_slope[0] + right_slope[1] * right_rate;
-        const double even_k = k + right_k, even_c = value[1] + right_value[1];
-        lowest = least(w + part, lowest);
-        lowest = least(right_w + right_part, lowest);
-        w0 += w + right_w;
-        w1 += x * (w - right_w);
-        k0 += even_k;
-        k1 += x * (k - right_k);
-        k2 += xx * even_k;
-        c0 += even_c;
-        c1 += x * (value[1] - right_value[1]);
-        c2 += xx * even_c;
-    }
-    sum->w[0] = w0;
-    sum->w[1] = w1;
-    sum->k[0] = k0;
-    sum->k[1] = k1;
-    sum->k[2] = k2;
-    sum->c[0] = c0;
-    sum->c[1] = c1;
-    sum->c[2] = c2;
     return lowest >= 0.0;
 }
 
@@ -434,6 +473,7 @@ static int cylinder_force(const ehd_cylinder *bearing, const ehd_cylinder_law *l
     const double lift_off = law->numbers->lift_off;
     int status = EHD_OK;
     memset(answer, 0, sizeof *answer);
+    if (law->grows) grow_cells(bearing, law, motion, work);
     for (int64_t j = 0; j < bearing->rollers; j++) {
         roller r = roller_of(bearing, motion, j);
         slices s = roller_slices(bearing, work, j);

@@ -11,6 +11,8 @@
 enum { CELL_LOAD, CELL_SLOPE, CELL_DAMPING, CELL_BEND };
 enum { FADED_WHOLE, FADED_DRY, FADED_RISE, FADED_LOAD, FADED_SLOPE, FADED_DAMPING, FADED_BEND };
 
+#define ANCHORS 16 /* nodes from one at which an equilibrium of both contacts is sought by itself to the next one */
+
 /* Load above which slices are outside the map. */
 static double counted_load(const ehd_law_point *point) { return point->highest_load * (1.0 + LOAD_TOLERANCE); }
 
@@ -66,16 +68,67 @@ static int place_cells(const ehd_law_point *point, ehd_cylinder_numbers *numbers
     return below;
 }
 
-/* State of the whole film at a node, as if there were no hold; nothing below the first one that may carry a load. */
-static void node_state(const ehd_law_point *point, const ehd_cylinder_numbers *numbers, int64_t first, int64_t i,
-                       double values[4]) {
-    memset(values, 0, 4 * sizeof values[0]);
-    if (i < first) return;
-    const contact_state found = full_state(point, numbers->centre + node_place((int)i) / numbers->inverse_scale);
-    values[CELL_LOAD] = found.w;
-    values[CELL_SLOPE] = found.dw;
-    values[CELL_DAMPING] = found.w * found.ratio;
-    values[CELL_BEND] = found.dc;
+static double node_approach(const ehd_cylinder_numbers *numbers, int64_t i) {
+    return numbers->centre + node_place((int)i) / numbers->inverse_scale;
+}
+
+/* Division of the approach at a node. */
+static division divided_at(const ehd_law_point *point, const ehd_cylinder_numbers *numbers, int64_t i) {
+    division found = {0.0, 0.0, 0.0};
+    balanced_state(point, node_approach(numbers, i), &found);
+    return found;
+}
+
+/* Where searches for the equilibrium of both contacts begin, at nodes that rise: on cubics between equilibria at every
+ * so-manieth node, so that it does not matter which nodes are asked for. */
+static void first_divisions(const ehd_law_point *point, const ehd_cylinder_numbers *numbers, int64_t first, int64_t end,
+                            int count, const int *asked, const double *approach, double *inner) {
+    int64_t left = -1, right = -1;
+    double x = 0.0, h = 0.0;
+    division low = {0.0, 0.0, 0.0}, high = low;
+    for (int i = 0; i < count; i++) {
+        const int64_t begin = asked[i] - asked[i] % ANCHORS;
+        const int64_t below = begin > first ? begin : first, above = begin + ANCHORS < end ? begin + ANCHORS : end - 1;
+        if (below != left || above != right) {
+            low = below == right ? high : divided_at(point, numbers, below);
+            high = above > below ? divided_at(point, numbers, above) : low;
+            left = below;
+            right = above;
+            x = node_approach(numbers, below);
+            h = node_approach(numbers, above) - x;
+        }
+        if (h > 0.0) {
+            const double t = (approach[i] - x) / h, secant = (high.inner - low.inner) / h;
+            const double bend = (1.0 - t) * (low.part - secant) - t * (high.part - secant);
+            inner[i] = low.inner + t * h * (secant + (1.0 - t) * bend);
+        } else {
+            inner[i] = low.inner;
+        }
+    }
+}
+
+/* States of the whole film at nodes that rise, at most MANY, up to one before `end`, as if there were no hold; nothing
+ * below the first one that may carry a load. */
+static void node_states(const ehd_law_point *point, const ehd_cylinder_numbers *numbers, int64_t first, int64_t end,
+                        int count, const int *asked, double (*const values[])[4]) {
+    double approach[MANY], inner[MANY];
+    block_states found;
+    int below = 0;
+    while (below < count && asked[below] < first) memset(*values[below++], 0, sizeof *values[0]);
+    asked += below;
+    values += below;
+    count -= below;
+    if (count < 1) return;
+    for (int i = 0; i < count; i++) approach[i] = node_approach(numbers, asked[i]);
+    if (point->centrifugal_load > 0.0) first_divisions(point, numbers, first, end, count, asked, approach, inner);
+    full_states(point, count, approach, inner, &found);
+    for (int i = 0; i < count; i++) {
+        double *at = *values[i];
+        at[CELL_LOAD] = found.w[i];
+        at[CELL_SLOPE] = found.dw[i];
+        at[CELL_DAMPING] = found.w[i] * found.ratio[i];
+        at[CELL_BEND] = found.dc[i];
+    }
 }
 
 /* State at a node beyond the hold: the law goes on straight from the first one there, number end - 1, whose state is
@@ -105,18 +158,24 @@ static void write_cubic(double cell[4][2], int f, double y0, double y1, double s
     cell[3][f] = (s0 + s1 - 2.0 * secant) * by * by;
 }
 
+/* Inverse of the distance from a node to the next one, in scales: a power of two. */
+static double node_step(int low) {
+    const int64_t cell = low >= EHD_ROWS ? low - EHD_ROWS : EHD_ROWS - 1 - low;
+    return number_of_bits((uint64_t)(1023 + CELL_BITS - (cell >> CELL_BITS)) << 52);
+}
+
 /* Slopes of load and damping by z at a node, held so that neither falls below where it must not. */
 static void held_slopes(const double (*values)[4], double scale, int i, double held[2]) {
     const int last = EHD_NODES - 1;
     const double w = values[i][CELL_LOAD], c = values[i][CELL_DAMPING];
     double slope = values[i][CELL_SLOPE] * scale, bend = values[i][CELL_BEND] * scale;
     if (i > 0) {
-        const double before = 3.0 / (node_place(i) - node_place(i - 1));
+        const double before = 3.0 * node_step(i - 1);
         slope = least(slope, (w - values[i - 1][CELL_LOAD]) * before);
         bend = least(bend, c * before);
     }
     if (i < last) {
-        const double after = 3.0 / (node_place(i + 1) - node_place(i));
+        const double after = 3.0 * node_step(i);
         slope = least(slope, (values[i + 1][CELL_LOAD] - w) * after);
         bend = most(bend, -c * after);
     }
@@ -136,59 +195,70 @@ static void write_cell(const ehd_cylinder_law *law, int low, const double at_low
     double(*cell)[2] = (double(*)[2])(law->cells + 8 * (size_t)row_of_node(low));
     const int above = low >= EHD_ROWS, near = above ? low : low + 1, far = above ? low + 1 : low;
     const double *at_near = above ? at_low : at_high, *at_far = above ? at_high : at_low;
-    const double by = 1.0 / (node_place(far) - node_place(near));
+    const double by = above ? node_step(low) : -node_step(low);
     write_cubic(cell, 0, values[near][CELL_LOAD], values[far][CELL_LOAD], at_near[0], at_far[0], by);
     write_cubic(cell, 1, values[near][CELL_DAMPING], values[far][CELL_DAMPING], at_near[1], at_far[1], by);
 }
 
-/* State at a node of a table, unless it is known. */
-static void know_node(const ehd_cylinder_law *law, int64_t i) {
-    unsigned char *known = NODE_MARKS(law);
-    double *values = law->nodes + 4 * (size_t)i;
-    if (known[i]) return;
-    known[i] = 1;
-    if (i < law->end) {
-        node_state(law->point, law->numbers, law->first, i, values);
-    } else {
-        know_node(law, law->end - 1);
-        straight_node(law->numbers, law->end, law->nodes + 4 * (size_t)(law->end - 1), i, values);
-    }
+/* Whether a node or a cell is there, in marks. */
+enum { UNKNOWN, WANTED, KNOWN };
+
+static void want_node(const ehd_cylinder_law *law, int64_t i) {
+    if (NODE_MARKS(law)[i] == UNKNOWN) NODE_MARKS(law)[i] = WANTED;
 }
 
-/* Make a cell that is not made yet. */
-static void make_cell(const ehd_cylinder_law *law, uint64_t row) {
-    unsigned char *made = CELL_MARKS(law);
-    const double(*values)[4] = (const double(*)[4])law->nodes, scale = 1.0 / law->numbers->inverse_scale;
-    const int low = node_of_row((int)row);
-    double at_low[2], at_high[2];
-    if (made[row]) return;
-    made[row] = 1;
-    for (int i = low > 0 ? low - 1 : 0; i < low + 3 && i < EHD_NODES; i++) know_node(law, i);
-    held_slopes(values, scale, low, at_low);
-    held_slopes(values, scale, low + 1, at_high);
-    write_cell(law, low, at_low, at_high);
+/* States at the nodes that are wanted, of those from one up to another. */
+static void know_nodes(const ehd_cylinder_law *law, int64_t low, int64_t high) {
+    unsigned char *known = NODE_MARKS(law);
+    double(*values)[4] = (double(*)[4])law->nodes, (*places[MANY])[4];
+    const int64_t end = law->end;
+    int wanted[MANY], count = 0;
+    if (high > end) want_node(law, end - 1);
+    if (high > end && end - 1 < low) low = end - 1;
+    for (int64_t i = low; i < high && i < end; i++) {
+        if (known[i] == WANTED) {
+            known[i] = KNOWN;
+            wanted[count] = (int)i;
+            places[count++] = &values[i];
+        }
+        if (count > 0 && (count == MANY || i + 1 == high || i + 1 == end)) {
+            node_states(law->point, law->numbers, law->first, end, count, wanted, places);
+            count = 0;
+        }
+    }
+    for (int64_t i = most(low, end); i < high; i++) {
+        if (known[i] != WANTED) continue;
+        known[i] = KNOWN;
+        straight_node(law->numbers, end, values[end - 1], i, values[i]);
+    }
 }
 
 /* Begin a table of the point whose cells are made as slices need them; returns 0 where it does not reach lift-off. */
 static int begin_cells(ehd_cylinder_law *law) {
     if (place_cells(law->point, law->numbers) == 0) return 0;
     loaded_nodes(law->point, law->numbers, &law->first, &law->end);
-    memset(law->marks, 0, 2 * EHD_NODES);
+    memset(law->marks, UNKNOWN, 2 * EHD_NODES);
     return 1;
 }
 
-/* Make all cells of a table that is begun. */
-static void make_cells(const ehd_cylinder_law *law) {
+/* Make the cells that are wanted, of those between one node and another. */
+static void make_cells(const ehd_cylinder_law *law, int low, int high) {
     const double(*values)[4] = (const double(*)[4])law->nodes, scale = 1.0 / law->numbers->inverse_scale;
+    unsigned char *made = CELL_MARKS(law);
     double held[2][2];
-    for (int64_t i = 0; i < EHD_NODES; i++) know_node(law, i);
-    held_slopes(values, scale, 0, held[0]);
-    for (int low = 0; low < EHD_NODES - 1; low++) { /* the slopes of each node are held once */
-        double *at_low = held[low % 2], *at_high = held[(low + 1) % 2];
-        held_slopes(values, scale, low + 1, at_high);
-        write_cell(law, low, at_low, at_high);
+    int there = -1; /* the node whose slopes are held already */
+    for (int i = low; i < high; i++)
+        for (int k = i > 0 ? i - 1 : 0; made[row_of_node(i)] == WANTED && k < i + 3 && k < EHD_NODES; k++) want_node(law, k);
+    know_nodes(law, low > 0 ? low - 1 : 0, high + 2 < EHD_NODES ? high + 2 : EHD_NODES);
+    for (int i = low; i < high; i++) {
+        double *at_low = held[i % 2], *at_high = held[(i + 1) % 2];
+        if (made[row_of_node(i)] != WANTED) continue;
+        made[row_of_node(i)] = KNOWN;
+        if (there != i) held_slopes(values, scale, i, at_low);
+        held_slopes(values, scale, i + 1, at_high);
+        there = i + 1;
+        write_cell(law, i, at_low, at_high);
     }
-    memset(CELL_MARKS(law), 1, 2 * EHD_ROWS);
 }
 
 /* Nodes of a film of which only a part is there, into film (2 EHD_ROWS, 8): what holds for every part of it.
@@ -201,24 +271,30 @@ static int write_film(const ehd_law_point *point, double *film, ehd_cylinder_num
     const int last = 2 * EHD_ROWS - 1;
     int64_t first, end;
     int safe = 0;
-    double values[4], last_node[4] = {0.0, 0.0, 0.0, 0.0}, compliance;
+    double values[MANY][4], (*places[MANY])[4], last_node[4] = {0.0, 0.0, 0.0, 0.0}, compliance;
+    int asked[MANY];
     ehd_cylinder_numbers whole;
     place_cells(point, &whole);
     loaded_nodes(point, &whole, &first, &end);
     if (first < 2) return 0;
     const double highest = whole.highest, up_to = least(highest, point->held_load), q = point->centrifugal_load;
     for (int i = 0; i < last; i++) {
-        double *row = film + 8 * (size_t)i;
-        if (i + 1 < end)
-            node_state(point, &whole, first, i + 1, values);
-        else
-            straight_node(&whole, end, last_node, i + 1, values);
-        if (i + 2 == end) memcpy(last_node, values, sizeof values);
-        row[FADED_WHOLE] = whole.centre + node_place(i + 1) / whole.inverse_scale;
-        row[FADED_DRY] = structural_approach(point->data, q, values[CELL_LOAD], &compliance);
-        row[FADED_RISE] = compliance * values[CELL_SLOPE];
-        memcpy(row + FADED_LOAD, values, sizeof values);
-        if (values[CELL_LOAD] <= up_to) safe = i;
+        double *row = film + 8 * (size_t)i, *at = values[i % MANY];
+        if (i % MANY == 0) { /* of so many nodes at once, from number i + 1 on */
+            int count = 0;
+            for (; count < MANY && i + count < last && i + 1 + count < end; count++) {
+                asked[count] = i + 1 + count;
+                places[count] = &values[count];
+            }
+            node_states(point, &whole, first, end, count, asked, places);
+        }
+        if (i + 1 >= end) straight_node(&whole, end, last_node, i + 1, at);
+        if (i + 2 == end) memcpy(last_node, at, sizeof last_node);
+        row[FADED_WHOLE] = node_approach(&whole, i + 1);
+        row[FADED_DRY] = structural_approach(point->data, q, at[CELL_LOAD], &compliance);
+        row[FADED_RISE] = compliance * at[CELL_SLOPE];
+        memcpy(row + FADED_LOAD, at, 4 * sizeof at[0]);
+        if (at[CELL_LOAD] <= up_to) safe = i;
     }
     double *held = film + 8 * (size_t)last;
     held[FADED_WHOLE] = whole.held_approach;
@@ -337,7 +413,8 @@ int ehd_cylinder_prepare(const ehd_law_data *data, double u, double T, double q,
     } else if (asked & EHD_GROWING) {
         law->grows = 1;
     } else {
-        make_cells(law);
+        memset(CELL_MARKS(law), WANTED, 2 * EHD_ROWS);
+        make_cells(law, 0, EHD_NODES - 1);
     }
     return status;
 }

@@ -11,6 +11,8 @@
 #define COLDEST 170.0         /* [K], where the viscosity of mineral oils tends to infinity, about */
 #define LEAST_LOAD 1e-200
 #define MOST_STEPS 100
+#define CUBICS 64             /* cells of a line that are made in one loop */
+#define CLOSE_LOADS 1e-8      /* how far logarithms of loads may be apart before a last step, which leaves its square */
 
 /* State of a contact at rest: w, dw/dapproach, c/w, dc/dapproach. */
 typedef struct contact_state {
@@ -119,7 +121,7 @@ static double structural_approach(const ehd_law_data *D, double q, double load, 
 }
 
 /* Mean of a row of the table by the weights of 3 x 3 speeds and temperatures: number m of `numbers` in each. */
-static double mixed(const double *values, int64_t temperatures, int64_t numbers, const node *i, const node *j,
+EHD_INLINE double mixed(const double *values, int64_t temperatures, int64_t numbers, const node *i, const node *j,
                     int64_t m) {
     double sum = 0.0;
     for (int a = 0; a < 3; a++) {
@@ -159,11 +161,27 @@ static double end_at(const ehd_law_data *D, double log_speed, double T) {
     return exp((1.0 - a) * low + a * high);
 }
 
+/* Cubics of so many cells of a table, at most CUBICS, from one of them on, at one speed and temperature. */
+EHD_CLONES static void write_cubics(const ehd_law_table *table, const node *i, const node *j, int64_t first,
+                                    int64_t count, double (*cell)[2][4]) {
+    const int64_t numbers = 2 * table->places;
+    double c[2 * (CUBICS + 3)];
+    for (int64_t m = 0; m < 2 * (count + 3); m++)
+        c[m] = mixed(table->coefficients, table->temperatures, numbers, i, j, 2 * first + m);
+    for (int64_t k = 0; k < count; k++) {
+        for (int f = 0; f < 2; f++) {
+            const double *at = c + 2 * k + f;
+            cell[k][f][0] = (at[0] + 4.0 * at[2] + at[4]) / 6.0;
+            cell[k][f][1] = 0.5 * (at[4] - at[0]);
+            cell[k][f][2] = 0.5 * (at[0] + at[4]) - at[2];
+            cell[k][f][3] = (at[6] - at[0]) / 6.0 + 0.5 * (at[2] - at[4]);
+        }
+    }
+}
+
 /* A table at one speed and temperature; its cells go to a place in memory. Returns the first byte after them. */
 static uintptr_t collapse(const ehd_law_table *table, double log_speed, double T, ehd_line *line, uintptr_t at) {
     node i, j;
-    const int64_t numbers = 2 * table->places;
-    double c[4][2] = {{0.0}};
     place_of(table, log_speed, T, &i, &j);
     line->offset = mixed(table->place, table->temperatures, 2, &i, &j, 0);
     line->inverse_scale = mixed(table->place, table->temperatures, 2, &i, &j, 1);
@@ -171,19 +189,9 @@ static uintptr_t collapse(const ehd_law_table *table, double log_speed, double T
     line->step = table->step;
     line->cells = cells_of(table);
     line->to_cells = (int64_t)(at - (uintptr_t)line);
-    double(*cell)[2][4] = line_cells(line);
-    for (int64_t k = 0; k < table->places; k++) {
-        for (int f = 0; f < 2; f++) {
-            for (int n = 0; n < 3; n++) c[n][f] = c[n + 1][f];
-            c[3][f] = mixed(table->coefficients, table->temperatures, numbers, &i, &j, 2 * k + f);
-            if (k < 3) continue;
-            double *cubic = cell[k - 3][f];
-            cubic[0] = (c[0][f] + 4.0 * c[1][f] + c[2][f]) / 6.0;
-            cubic[1] = 0.5 * (c[2][f] - c[0][f]);
-            cubic[2] = 0.5 * (c[0][f] + c[2][f]) - c[1][f];
-            cubic[3] = (c[3][f] - c[0][f]) / 6.0 + 0.5 * (c[1][f] - c[2][f]);
-        }
-    }
+    for (int64_t first = 0; first < line->cells; first += CUBICS)
+        write_cubics(table, &i, &j, first, line->cells - first < CUBICS ? line->cells - first : CUBICS,
+                     line_cells(line) + first);
     return at + (uintptr_t)(line->cells * CELL_SIZE);
 }
 
@@ -193,17 +201,27 @@ static double cubic_at(const double a[4], double t, double *slope) {
     return a[0] + t * (a[1] + t * (a[2] + t * a[3]));
 }
 
-/* State of a line at an approach. */
-static contact_state line_state(const ehd_line *line, double approach) {
+/* State of a line at an approach, and the second derivative of its load. */
+static contact_state bent_state(const ehd_line *line, double approach, double *curvature) {
+    const double z = (approach - line->offset) * line->inverse_scale;
     double ds, dg, dlog_ratio;
-    const double s = stretched((approach - line->offset) * line->inverse_scale, &ds);
+    const double s = stretched(z, &ds);
     const double x = place_within((s - line->start) * line->step, line->cells);
     const int cell = cell_of(x, line->cells);
-    const double scale = line->step * ds * line->inverse_scale;
+    const double t = x - cell, per_s = ds * line->inverse_scale, scale = line->step * per_s;
     const double(*cubics)[4] = (const double(*)[4])line_cells(line)[cell];
-    const double g = cubic_at(cubics[0], x - cell, &dg);
-    const double log_ratio = cubic_at(cubics[1], x - cell, &dlog_ratio);
-    return state_of(g, dg * scale, log_ratio, dlog_ratio * scale);
+    const double g = most(cubic_at(cubics[0], t, &dg), 0.0);
+    const double log_ratio = cubic_at(cubics[1], t, &dlog_ratio);
+    const double slope = dg * scale, per_cell = 2.0 * cubics[0][2] + 6.0 * t * cubics[0][3];
+    const double bend = per_cell * scale * scale - slope * z * ds * per_s;
+    *curvature = 3.0 * g * (2.0 * slope * slope + g * bend);
+    return state_of(g, slope, log_ratio, dlog_ratio * scale);
+}
+
+/* State of a line at an approach. */
+static contact_state line_state(const ehd_line *line, double approach) {
+    double curvature;
+    return bent_state(line, approach, &curvature);
 }
 
 /* State of a table at one place, without making a line of it. */
@@ -273,43 +291,62 @@ static double line_approach(const ehd_line *line, double load) {
     return line->offset + sinh(line->start + (low + t) / line->step) / line->inverse_scale;
 }
 
-/* Second derivative of the load of a line by the approach, where it carries load. */
-static double line_curvature(const ehd_line *line, double approach, double dw) {
-    const double z = (approach - line->offset) * line->inverse_scale;
-    double ds, slope;
-    const double s = stretched(z, &ds);
-    const double x = place_within((s - line->start) * line->step, line->cells);
-    const int cell = cell_of(x, line->cells);
-    const double *a = line_cells(line)[cell][0];
-    const double g = cubic_at(a, x - cell, &slope), dg = dw / (3.0 * g * g);
-    const double per_s = ds * line->inverse_scale, per_cell = line->step * per_s;
-    const double ddg = (2.0 * a[2] + 6.0 * (x - cell) * a[3]) * per_cell * per_cell - dg * z * ds * per_s;
-    return 6.0 * g * dg * dg + 3.0 * g * g * ddg;
+/* Approach of the inner contact of two in equilibrium, the part that it takes of a growing approach of both, and how that
+ * part changes; the part is zero where nothing is known. */
+typedef struct division {
+    double inner, part, change;
+} division;
+
+/* Division to begin with at an approach, where no neighbour's is known. */
+static double first_division(const ehd_law_point *point, double approach) {
+    const ehd_line *inner = &point->inner, *outer = &point->outer;
+    const double high = approach - point->outer_start;
+    double di, dwo;
+    const double wi = line_load(inner, high, &di);
+    if (wi < 0.3 * point->centrifugal_load) { /* the outer contact hardly moves */
+        line_load(outer, point->outer_start, &dwo);
+        return high - wi / (di + dwo);
+    }
+    /* both alike, as their scales are */
+    const double share = outer->inverse_scale / (inner->inverse_scale + outer->inverse_scale);
+    return inner->offset + (approach - inner->offset - outer->offset) * share;
+}
+
+/* State of two contacts in equilibrium from those of each and the second derivatives of their loads; how the approach
+ * divides, but for the approach itself. */
+EHD_INLINE contact_state joined(const contact_state *i, double curve_i, const contact_state *o, double curve_o,
+                                division *divided) {
+    const double sum = i->dw + o->dw, part_i = o->dw / sum, part_o = i->dw / sum;
+    const double change = (curve_o * part_o * i->dw - o->dw * curve_i * part_i) / (sum * sum);
+    contact_state found;
+    found.w = i->w;
+    found.dw = i->dw * part_i;
+    found.ratio = i->ratio * part_i * part_i + o->w / i->w * o->ratio * part_o * part_o;
+    found.dc = i->dc * part_i * part_i * part_i + o->dc * part_o * part_o * part_o +
+               2.0 * change * (i->w * i->ratio * part_i - o->w * o->ratio * part_o);
+    divided->part = part_i;
+    divided->change = change;
+    return found;
 }
 
 /* State of a roller between its two contacts, the outer one of which carries the centrifugal load q besides.
  *
  * The approach divides into a and approach - a so that W_inner(a) + q = W_outer(approach - a): Newton's method in the
- * logarithm of the loads, within a closing bracket. */
-static contact_state balanced_state(const ehd_law_point *point, double approach) {
+ * logarithm of the loads, within a closing bracket. `divided` is what is known of the division, and becomes what it is. */
+static contact_state balanced_state(const ehd_law_point *point, double approach, division *divided) {
     const ehd_line *inner = &point->inner, *outer = &point->outer;
-    const double q = point->centrifugal_load, scale = 1.0 / inner->inverse_scale;
-    if (approach <= point->lift_off) return NO_LOAD;
-    double low = point->inner_lift_off, high = approach - point->outer_start, a, di, dwo;
-    double wi = line_load(inner, high, &di), wo;
+    const double q = point->centrifugal_load;
+    double low = point->inner_lift_off, high = approach - point->outer_start, curve_i, curve_o;
+    double a = divided->part > 0.0 ? divided->inner : NAN;
     int last = 0;
-    if (wi < 0.3 * q) { /* the outer contact hardly moves */
-        line_load(outer, point->outer_start, &dwo);
-        a = high - wi / (di + dwo);
-    } else { /* both alike, as their scales are */
-        const double share = outer->inverse_scale / (inner->inverse_scale + outer->inverse_scale);
-        a = inner->offset + (approach - inner->offset - outer->offset) * share;
-    }
+    divided->part = 0.0;
+    if (approach <= point->lift_off) return NO_LOAD;
+    if (!(low <= a && a <= high)) a = first_division(point, approach);
     for (int n = 0; n < MOST_STEPS; n++) {
+        double di, dwo;
         if (!(low <= a && a <= high)) a = 0.5 * (low + high);
         if (last) break;
-        wi = line_load(inner, a, &di);
-        wo = line_load(outer, approach - a, &dwo);
+        const double wi = line_load(inner, a, &di), wo = line_load(outer, approach - a, &dwo);
         if (wo <= 0.0) {
             high = a;
             a = 0.5 * (low + high);
@@ -320,28 +357,19 @@ static contact_state balanced_state(const ehd_law_point *point, double approach)
             high = a;
         else
             low = a;
-        const double step = excess / (di / (wi + q) + dwo / wo);
-        a -= step;
-        last = fabs(step) <= 1e-9 * (fabs(a) + scale);
+        a -= excess / (di / (wi + q) + dwo / wo);
+        last = fabs(excess) <= CLOSE_LOADS;
     }
-    const contact_state i = line_state(inner, a), o = line_state(outer, approach - a);
+    const contact_state i = bent_state(inner, a, &curve_i), o = bent_state(outer, approach - a, &curve_o);
     if (i.w < LEAST_LOAD || o.w < LEAST_LOAD) return NO_LOAD;
-    const double sum = i.dw + o.dw, part_i = o.dw / sum, part_o = i.dw / sum;
-    const double bend_i = line_curvature(inner, a, i.dw) * part_i;
-    const double bend_o = line_curvature(outer, approach - a, o.dw) * part_o;
-    const double change = (bend_o * i.dw - o.dw * bend_i) / (sum * sum);
-    contact_state found;
-    found.w = i.w;
-    found.dw = i.dw * part_i;
-    found.ratio = i.ratio * part_i * part_i + o.w / i.w * o.ratio * part_o * part_o;
-    found.dc = i.dc * part_i * part_i * part_i + o.dc * part_o * part_o * part_o +
-               2.0 * change * (i.w * i.ratio * part_i - o.w * o.ratio * part_o);
-    return found;
+    divided->inner = a;
+    return joined(&i, curve_i, &o, curve_o, divided);
 }
 
 /* State with the whole film. */
 static contact_state full_state(const ehd_law_point *point, double approach) {
-    if (point->centrifugal_load > 0.0) return balanced_state(point, approach);
+    division divided = {0.0, 0.0, 0.0};
+    if (point->centrifugal_load > 0.0) return balanced_state(point, approach, &divided);
     return line_state(&point->own, approach);
 }
 

@@ -2,15 +2,8 @@
  * The contact law at many places
  * ------------------------------------------------------------------------------------------------------------------ */
 
-#define MANY 128 /* places in a block */
-
 /* Causes in counts. */
 enum { COUNT_LOAD, COUNT_SPEED, COUNT_TEMPERATURE, COUNT_NOT_FINITE };
-
-/* Splines of a block and what they are made from. */
-typedef struct law_block {
-    double place[MANY], scale[MANY], g[MANY], dg[MANY], q[MANY], dq[MANY];
-} law_block;
 
 /* Nearest nodes of a block along an axis, and the weights of the quadratic B-splines there. */
 typedef struct block_nodes {
@@ -18,39 +11,12 @@ typedef struct block_nodes {
     int32_t first[MANY];
 } block_nodes;
 
-/* One of two numbers: compilers make no branch of it. */
-static inline double chosen(int first, double yes, double no) {
-    const uint64_t mask = UINT64_C(0) - (uint64_t)first;
-    return number_of_bits((bits_of(yes) & mask) | (bits_of(no) & ~mask));
-}
-
-/* x within -700 to 700. */
-static inline double held_exponent(double x) {
-    x = chosen(x > -700.0, x, -700.0);
-    return chosen(x < 700.0, x, 700.0);
-}
-
-/* Places on the stretched axis, and their derivatives by the approach. */
-static inline void block_places(int n, const double *restrict approach, const double *restrict offset,
-                                const double *restrict inverse_scale, double start, double step, double cells,
-                                double *restrict place, double *restrict scale) {
-    for (int i = 0; i < n; i++) {
-        const double z = (approach[i] - offset[i]) * inverse_scale[i], root = sqrt(1.0 + z * z);
-        const double size = plain_log(fabs(z) + root), s = z >= 0.0 ? size : -size, x = (s - start) * step;
-        const double above = x > 0.0 ? x : 0.0;
-        scale[i] = step * inverse_scale[i] / root;
-        place[i] = above < cells ? above : cells;
-    }
-}
-
-/* Forces from splines and their slopes, as state_of and unilateral have them. */
+/* Forces from splines and their slopes, as unilateral has them. */
 static inline void block_forces(int n, const law_block *restrict of, const double *restrict rate, double *restrict w,
                                 double *restrict k, double *restrict c) {
     for (int i = 0; i < n; i++) {
-        const double g = chosen(of->g[i] > 0.0, of->g[i], 0.0), load = g * g * g;
-        const double slope = 3.0 * g * g * (of->dg[i] * of->scale[i]);
-        const double ratio = plain_exp(held_exponent(of->q[i])), bend = ratio * (slope + load * (of->dq[i] * of->scale[i]));
-        const double damping = load * ratio, part = damping * rate[i];
+        const contact_state at = splined(of->g[i], of->dg[i], of->q[i], of->dq[i], of->scale[i]);
+        const double load = at.w, slope = at.dw, bend = at.dc, damping = load * at.ratio, part = damping * rate[i];
         const int parting = part < -0.5 * load;
         const double by = load / chosen(parting, part, 1.0);
         const double near_load = load + part, far_load = -0.25 * load * by;
@@ -59,21 +25,6 @@ static inline void block_forces(int n, const law_block *restrict of, const doubl
         w[i] = chosen(parting, far_load, near_load);
         k[i] = chosen(parting, far_slope, near_slope);
         c[i] = chosen(parting, far_damping, damping);
-    }
-}
-
-/* Splines of a line and their slopes. */
-static inline void line_splines(const ehd_line *line, int n, law_block *of) {
-    double(*cells)[2][4] = line_cells(line);
-    const double last = (double)(line->cells > 1 ? line->cells - 1 : 0);
-    for (int i = 0; i < n; i++) {
-        const double place = of->place[i];
-        const int cell = (int)(place < last ? place : last);
-        const double t = place - cell, *a = cells[cell][0], *b = cells[cell][1];
-        of->g[i] = a[0] + t * (a[1] + t * (a[2] + t * a[3]));
-        of->dg[i] = a[1] + t * (2.0 * a[2] + 3.0 * t * a[3]);
-        of->q[i] = b[0] + t * (b[1] + t * (b[2] + t * b[3]));
-        of->dq[i] = b[1] + t * (2.0 * b[2] + 3.0 * t * b[3]);
     }
 }
 
@@ -97,31 +48,24 @@ static void count_force(const ehd_law_point *point, double approach, double rate
 }
 
 /* Forces of a block; whether all of them stand, see line_answers. */
-EHD_CLONES static int line_block(const ehd_law_point *point, const double *offset, const double *inverse_scale,
-                                 double limit, int n, const double *approach, const double *rate, law_block *of,
-                                 double *w, double *k, double *c) {
-    const ehd_line *line = &point->own;
-    block_places(n, approach, offset, inverse_scale, line->start, line->step, (double)line->cells, of->place, of->scale);
-    line_splines(line, n, of);
+EHD_CLONES static int line_block(const ehd_law_point *point, double limit, int n, const double *approach,
+                                 const double *rate, law_block *of, double *w, double *k, double *c) {
+    line_places(&point->own, n, approach, of->place, of->scale);
+    line_splines(&point->own, n, 1, of);
     block_forces(n, of, rate, w, k, c);
     return line_answers(n, approach, rate, of->g, point->held_approach, limit);
 }
 
 void ehd_law_force_many(const ehd_law_point *point, int64_t count, const double *approach, const double *rate,
                         double *forces, int64_t *counts) {
-    double *w = forces, *k = forces + count, *c = forces + 2 * count, offset[MANY], inverse_scale[MANY];
+    double *w = forces, *k = forces + count, *c = forces + 2 * count;
     const int plain = point->film == 1.0 && point->centrifugal_load == 0.0;
     const double limit = point->highest_load * (1.0 + LOAD_TOLERANCE);
     law_block of;
     ehd_force force;
-    for (int i = 0; i < MANY; i++) {
-        offset[i] = point->own.offset;
-        inverse_scale[i] = point->own.inverse_scale;
-    }
     for (int64_t first = 0; first < count; first += MANY) {
         const int n = count - first < MANY ? (int)(count - first) : MANY;
-        if (plain && line_block(point, offset, inverse_scale, limit, n, approach + first, rate + first, &of, w + first,
-                                k + first, c + first))
+        if (plain && line_block(point, limit, n, approach + first, rate + first, &of, w + first, k + first, c + first))
             continue;
         for (int i = 0; i < n; i++) {
             const int64_t at = first + i;
@@ -171,6 +115,7 @@ EHD_CLONES static void table_block(const ehd_law_data *D, int n, const double *a
     const ehd_law_table *table = &D->own;
     const int64_t numbers = 2 * table->places, temperatures = table->temperatures;
     const double last = (double)(table->places > 4 ? table->places - 4 : 0);
+    const double start = table->start, step = table->step, cells = (double)(table->places - 3);
     double axis[MANY], offset[MANY], inverse_scale[MANY];
     block_nodes speed, heat;
     for (int i = 0; i < n; i++) {
@@ -186,8 +131,11 @@ EHD_CLONES static void table_block(const ehd_law_data *D, int n, const double *a
         offset[i] = sums[0];
         inverse_scale[i] = sums[1];
     }
-    block_places(n, approach, offset, inverse_scale, table->start, table->step, (double)(table->places - 3), of->place,
-                 of->scale);
+    for (int i = 0; i < n; i++) {
+        double root;
+        of->place[i] = stretched_place((approach[i] - offset[i]) * inverse_scale[i], start, step, cells, &root);
+        of->scale[i] = step * inverse_scale[i] / root;
+    }
     for (int i = 0; i < n; i++) {
         double sums[8];
         const double place = of->place[i];
