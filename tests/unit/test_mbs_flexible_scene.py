@@ -13,7 +13,7 @@ from scipy import sparse
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
 from mbs import cli
-from mbs.commands import reduce as command
+from mbs.commands.scenes import reduce as command
 from mbs.flexible.finite_elements import Extent, FiniteElementModel, extent
 from mbs.flexible.reduced_file import read_reduced
 from mbs.model.body import FREEDOMS
