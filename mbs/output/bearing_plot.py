@@ -218,7 +218,7 @@ def _label(panels: Sequence[Axes], kind: Kind, over_load: bool, roughness: str, 
 def _static_limit(panel: Axes, kind: Kind, pressures: FloatArray) -> None:
     """A line at the static limit, where pressures come near it."""
     limit = kind.static_limit
-    if np.max(pressures) > 0.75 * limit:
+    if np.nanmax(pressures) > 0.75 * limit:
         panel.axhline(1e-9 * limit, color=WARNING, lw=0.9, ls=":")
         words = f"static limit {PRESSURE.text(limit)}"
         place = panel.get_yaxis_transform()

@@ -182,10 +182,13 @@ class Curves(NamedTuple):
 def _around(element: str, point: Any) -> Curves:
     """Loads, pressures and films of all rolling elements, around the bearing."""
     elements = point.elements
-    order = np.argsort(elements.angle)
+    rows = len(getattr(point.force.geometry, "rows", (None,)))
+    row = np.arange(elements.angle.size) * rows // elements.angle.size
+    order = np.lexsort((elements.angle, row))
+    ends = np.flatnonzero(np.diff(row)) + 1  # lines of rows do not go on in the next one
     values = (elements.load[:2], point.pressure, point.central_film, point.minimum_film)
-    load, pressure, central, minimum = (side[:, order] for side in values)
-    place = np.degrees(elements.angle[order])
+    load, pressure, central, minimum = (np.insert(side[:, order], ends, np.nan, axis=1) for side in values)
+    place = np.insert(np.degrees(elements.angle[order]), ends, np.nan)
     words = f"angle of the {element} from y towards z, degrees"
     return Curves("around the bearing", words, f"load of the\n{element}, N", place, load, pressure, central, minimum)
 
