@@ -19,8 +19,9 @@ from mbs.identification.free import Free, read_free
 from mbs.identification.machine import Machine
 from mbs.identification.measured import Measured, MeasuredModes
 from mbs.identification.planning import Step, before, information_of, plan, told_by
-from mbs.identification.reading import Reading, read_measured
+from mbs.identification.reading import Reading, read_measured, responses_of
 from mbs.identification.search import STARTS, Question, search
+from mbs.modal.records import Responses
 from mbs.scene.assembly import Model, assemble
 from mbs.scene.scene import Scene
 from mbs.settings import CAGE_ANGLES, check_cage_angles
@@ -37,8 +38,8 @@ def _silent(part: str) -> Callable[[int, int], None]:
     return lambda done, total: None
 
 
-Record = Measured | tuple[str | Path, str]
-"""Something measured: read already, or a file with its speed."""
+Record = Measured | tuple[str | Path | Responses, str]
+"""Something measured: read already, or a file or its responses with their speed."""
 
 
 def identify(
@@ -55,9 +56,10 @@ def identify(
     ----------
     machine : Model or Scene
         Scene with its law, or a scene, which gets that of `mbs.assemble`.
-    records : sequence of (str or Path, str), or of MeasuredResponses or MeasuredModes
+    records : sequence of (str, Path or Responses, str), or of MeasuredResponses or MeasuredModes
         What was measured, at one speed or several: files and their speeds, such as ("hits.uff", "1500 rpm"), with an
-        empty speed where the file has it; or what `mbs.identification.reading.read_measured` reads.
+        empty speed where the file has it; responses that `mbs.modal.estimation.estimate` makes of hits, likewise; or
+        what `mbs.identification.reading.read_measured` reads.
     free : sequence of str
         What is sought: "clearance", "temperature", "foot.stiffness", see `mbs.identification.free`. Damping ratios of
         bodies are sought besides where films are: they damp alike.
@@ -95,6 +97,8 @@ def _read(record: Record, scene: Scene) -> Sequence[Measured]:
     if not isinstance(record, tuple):
         return [record]
     file, speed = record
+    if isinstance(file, Responses):
+        return [responses_of(Path("responses"), file, quantity(speed, "rad/s"), scene, Reading())[0]]
     return read_measured(Path(file), quantity(speed, "rad/s") if speed else None, scene, Reading())[0]
 
 

@@ -111,14 +111,35 @@ def read_measured(path: Path, speed: float | None, scene: Scene, reading: Readin
         raise InputError(
             f'--measured: got {path} without a speed; allowed: --measured {path} "1500 rpm", "0 rpm" at rest'
         )
-    return [_of_scene(path, responses, speed, scene, reading, notes)], notes
+    found, said = responses_of(path, responses, speed, scene, reading)
+    return [found], [*notes, *said]
 
 
-def _of_scene(
-    path: Path, responses: Responses, speed: float, scene: Scene, reading: Reading, notes: list[str]
-) -> MeasuredResponses:
-    """Responses as those of sensors and inputs of a scene."""
+def responses_of(
+    path: Path, responses: Responses, speed: float, scene: Scene, reading: Reading
+) -> tuple[MeasuredResponses, list[str]]:
+    """Responses as those of sensors and inputs of a scene, and what is to be said of them.
+
+    Parameters
+    ----------
+    path : Path
+        Name of the measurement, for messages.
+    responses : Responses
+        Responses of a file, or what `mbs.modal.estimation.estimate` makes of hits.
+    speed : float
+        Speed of the system [rad/s].
+    scene : Scene
+        Sensors and inputs.
+    reading : Reading
+        Choices of how it is read.
+
+    Raises
+    ------
+    InputError
+        With every problem.
+    """
     problems = Problems()
+    notes: list[str] = []
     low, high = reading.band
     responses = responses.within(low, high)
     sensors = {one.name: one for one in scene.sensors}
@@ -151,7 +172,7 @@ def _of_scene(
         raise InputError(
             f"{path}: all its lines are in their noise; allowed: responses with coherence; average more hits"
         )
-    return found
+    return found, notes
 
 
 _There = TypeVar("_There", Sensor, Input)
