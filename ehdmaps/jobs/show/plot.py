@@ -45,15 +45,15 @@ MOST_TEMPERATURES = 6
 SHOWN_TEMPERATURE = 313.15
 """The full panels are at the mapped temperature nearest to this one [K]: where oils are compared."""
 
-_PANELS: tuple[tuple[str, str, Display], ...] = (
+PANELS: tuple[tuple[str, str, Display], ...] = (
     ("stiffness", "stiffness k", STIFFNESS),
     ("damping", "damping c", DAMPING),
     ("approach", "approach", FILM),
     ("central_film", "central film", FILM),
     ("minimum_film", "minimum film", FILM),
 )
-_SMALL = _PANELS[:2]
-_FILMS = ("central_film", "minimum_film")
+_SMALL = PANELS[:2]
+FILMS = ("central_film", "minimum_film")
 THIN: Mapping[str, Any] = {
     BELOW_ROUGHNESS: {"facecolor": "0.93", "edgecolor": "none", "zorder": 0},
     NO_CONTINUUM: {"facecolor": "0.8", "edgecolor": "none", "zorder": 0},
@@ -101,7 +101,7 @@ def _page(sheet: Sheet) -> Figure:
     middle = 0.385 if small else 0.10
     grid = figure.add_gridspec(
         contacts,
-        len(_PANELS),
+        len(PANELS),
         left=0.057,
         right=0.92,
         top=0.875,
@@ -110,11 +110,11 @@ def _page(sheet: Sheet) -> Figure:
         hspace=0.16,
     )
     for row in range(contacts):
-        for column, (name, label, display) in enumerate(_PANELS):
+        for column, (name, label, display) in enumerate(PANELS):
             axes = figure.add_subplot(grid[row, column])
             draw_curves(axes, sheet, name, display, (row, shown))
-            if name in _FILMS:
-                _shade_thin(axes, sheet, display)
+            if name in FILMS:
+                shade_thin(axes, sheet, display)
             axes.set_ylabel(f"{label}, {typeset(display.unit)}", labelpad=1)
             if row == 0:
                 axes.set_title(label, fontsize=8.5, fontweight="bold", pad=4)
@@ -132,7 +132,7 @@ def _page(sheet: Sheet) -> Figure:
     if small:
         _small_multiples(figure, sheet, temperatures, middle)
     speed_bar(figure, sheet, (0.936, middle + 0.055, 0.011, 0.875 - middle - 0.055))
-    page_legend(figure, _entries(sheet))
+    page_legend(figure, page_entries(sheet))
     write_line(figure, 0.014, _facts(sheet.dataset, sheet.emap.surface.roughness), 6.5, colour="0.35")
     return figure
 
@@ -166,8 +166,18 @@ def _thin(sheet: Sheet) -> list[tuple[float, str]]:
     return [(limit, words) for limit, words in limits if np.any((films > 0.0) & (films < limit))]
 
 
-def _shade_thin(axes: Axes, sheet: Sheet, display: Display) -> None:
-    """Shade the films that are too thin for the theory."""
+def shade_thin(axes: Axes, sheet: Sheet, display: Display) -> None:
+    """Shade the films that are too thin for the theory.
+
+    Parameters
+    ----------
+    axes : Axes
+        Panel of a film.
+    sheet : Sheet
+        The map.
+    display : Display
+        Unit of the film on the page.
+    """
     bottom, top = axes.get_ylim()
     for limit, words in _thin(sheet):
         axes.axhspan(bottom, display.value(limit), **THIN[words])
@@ -315,7 +325,7 @@ def write_line(
 
 
 def page_legend(figure: Figure, entries: Sequence[Line2D | Patch], bottom: float = 0.022) -> Legend:
-    """Write a legend at the foot of a page: three columns, or two where a long text would run out of it.
+    """Write a legend at the foot of a page: three columns, or as few as long texts need.
 
     Parameters
     ----------
@@ -326,7 +336,7 @@ def page_legend(figure: Figure, entries: Sequence[Line2D | Patch], bottom: float
     bottom : float
         Height of its lower edge, as a part of the page.
     """
-    for columns in (3, 2):
+    for columns in (3, 2, 1):
         legend = figure.legend(
             handles=entries,
             loc="lower left",
@@ -337,14 +347,20 @@ def page_legend(figure: Figure, entries: Sequence[Line2D | Patch], bottom: float
             columnspacing=2.5,
         )
         # letters are up to 3 % wider at the resolution of the file
-        if legend.get_window_extent().x1 <= 0.96 * figure.bbox.x1 or columns == 2:
+        if legend.get_window_extent().x1 <= 0.96 * figure.bbox.x1 or columns == 1:
             break
         legend.remove()
     return legend
 
 
-def _entries(sheet: Sheet) -> list[Line2D | Patch]:
-    """Entries of the legend."""
+def page_entries(sheet: Sheet) -> list[Line2D | Patch]:
+    """Entries of the legend.
+
+    Parameters
+    ----------
+    sheet : Sheet
+        The map.
+    """
     entries: list[Line2D | Patch] = [
         Line2D([], [], color="black", lw=0.8, ls=(0, (4, 2)), label="dry (structural law alone)")
     ]

@@ -113,7 +113,7 @@ def draw_curves(
         values = np.where(values > 0, values, np.nan)
     for index in spread(sheet.speeds.size, MOST_CURVES):
         colour = _colour(sheet, index)
-        dense = _dense(sheet, name, contact, temperature, index)
+        dense = dense_curve(sheet, name, (contact, temperature), index)
         if dense is None:
             axes.plot(loads, values[:, index], color=colour, lw=width)
             if loads.size == 1 or sheet.field is not None:
@@ -134,8 +134,21 @@ def draw_curves(
             axes.axvspan(start, max(loads[-1], start), **HATCH)
 
 
-def _dense(sheet: Sheet, name: str, contact: int, temperature: int, speed: int) -> tuple[FloatArray, FloatArray] | None:
-    """Loads [N/m] and values [SI] between the solved points; None where nothing is known there."""
+def dense_curve(sheet: Sheet, name: str, place: tuple[int, int], speed: int) -> tuple[FloatArray, FloatArray] | None:
+    """Loads [N/m] and values [SI] between the solved points; None where nothing is known there.
+
+    Parameters
+    ----------
+    sheet : Sheet
+        The map.
+    name : str
+        The variable.
+    place : tuple of int
+        Indices of contact and temperature.
+    speed : int
+        Index of the speed.
+    """
+    contact, temperature = place
     u, axis = float(sheet.speeds[speed]), sheet.dataset["load"].values
     if sheet.field is None or name not in _OF_LAWS or u == 0.0 or axis.size == 1:
         return None
