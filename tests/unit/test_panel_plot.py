@@ -43,10 +43,10 @@ def test_what_is_drawn_is_written(small_map, tmp_path, capsys):
 
 
 def test_panels_that_there_are_not(small_map, tmp_path, capsys):
-    words = ["--quantity", "stifness", "--contact", "both", "--temperature", "300 degC", "-o", str(tmp_path / "a.png")]
+    words = ["--quantity", "stiffnesz", "--contact", "both", "--temperature", "300 degC", "-o", str(tmp_path / "a.png")]
     assert main(["plot", str(small_map), *words]) == 2
     said = without_note(capsys.readouterr().err)
-    assert "--quantity: got 'stifness' (did you mean 'stiffness'?); allowed: stiffness, damping" in said
+    assert "--quantity: got 'stiffnesz' (did you mean 'stiffness'?); allowed: stiffness, damping" in said
     assert "--contact: got 'both'; allowed: inner, outer" in said
     assert main(["plot", str(small_map), "--temperature", "300 degC", *words[-2:]]) == 2
     assert "--temperature: got '300 degC'; allowed: those of the map, 20 degC" in capsys.readouterr().err

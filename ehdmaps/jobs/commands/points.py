@@ -37,6 +37,9 @@ _OF_LINES = (
 )
 """Options of maps of line contacts."""
 
+_OF_PANELS = ("quantity", "contact", "temperature")
+"""Options of figures of such maps."""
+
 EXPORTS = ("csv", "mat")
 _POINT, _FASTEST = ("speed", "temperature", "contact"), 1e3
 
@@ -51,7 +54,8 @@ def run(arguments: argparse.Namespace, source: str) -> tuple[str, int]:
     source : str
         Designation of the bearing, or file of the map.
     """
-    options = [name for name in _OF_LINES if getattr(arguments, name, None) not in (None, False)]
+    names = (*_OF_LINES, *(_OF_PANELS if arguments.command == "plot" else ()))
+    options = [name for name in names if getattr(arguments, name, None) not in (None, False)]
     problems = Problems(f"--{name.replace('_', '-')}: is one of line contacts; allowed: without it" for name in options)
     exported = arguments.command == "export"
     if exported and arguments.to not in EXPORTS:
