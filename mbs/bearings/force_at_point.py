@@ -422,29 +422,34 @@ def is_one_power(law: ContactLaw) -> bool:
 
 
 def six_numbers(name: str, given: Any) -> FloatArray:
-    """Six numbers of a pose or a velocity, or an error.
+    """Six numbers of a pose or a velocity, or an error."""
+    return real_numbers(f"bearing force, {name}", given, ("six ", 6, "in the order x y z theta_x theta_y theta_z"))
+
+
+def real_numbers(where: str, given: Any, wanted: tuple[str, int, str]) -> FloatArray:
+    """Numbers of a vector, or an error.
 
     Parameters
     ----------
-    name : str
-        pose or velocity, for messages.
+    where : str
+        What takes them; begins the message.
     given : object
         What was given.
+    wanted : (str, int, str)
+        How many they are, in words and as a number, and what they are.
 
     Raises
     ------
     InputError
         For anything else.
     """
+    words, size, order = wanted
     try:
         values = np.asarray(given, dtype=np.float64)
     except (TypeError, ValueError):
-        raise InputError(f"bearing force, {name}: got {given!r}; allowed: six real numbers") from None
-    if values.shape != _SIX:
-        raise InputError(
-            f"bearing force, {name}: got an array of shape {values.shape}; "
-            "allowed: (6,), in the order x y z theta_x theta_y theta_z"
-        )
+        raise InputError(f"{where}: got {given!r}; allowed: {words}real numbers") from None
+    if values.shape != (size,):
+        raise InputError(f"{where}: got an array of shape {values.shape}; allowed: ({size},), {order}")
     return values
 
 

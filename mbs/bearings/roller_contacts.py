@@ -11,6 +11,7 @@ series; with the laws of a map the two differ by the square of the small differe
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +21,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, OutsideMapError, SolverError
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import AT_REST
+from mbs.bearings.force_at_point import real_numbers
 from mbs.bearings.laws import DryLaw, FlatLaw, Law, law_problems
 from mbs.bearings.slices_in_balance import Side
 from mbs.model.elements import Forces
@@ -117,9 +119,7 @@ class RollerContacts:
         v = np.zeros(self.size) if velocity is None else self._vector("velocity", velocity)
         f, K, C = np.zeros(self.size), np.zeros((self.size, self.size)), np.zeros((self.size, self.size))
         outside = False
-        for side in (0, 1):
-            flat, tilted = self._rows(side, cage_angle)
-            delta = self._approach(flat, tilted, q)
+        for side, (flat, tilted), delta in self._contacts(q, cage_angle):
             rate = (flat @ v)[:, None] + self._x * (tilted @ v)[:, None]
             load, k, c, beyond = self._evaluate(side, delta, rate, entrainment_speed, temperature)
             outside |= beyond
@@ -167,15 +167,12 @@ class RollerContacts:
         """
         q = self._vector("displacement", displacement)
         f, K, C = np.zeros(self.size), np.zeros((self.size, self.size)), np.zeros((self.size, self.size))
-        length, films = self.bearing.slice_length, []
-        for side, law in enumerate(self.laws):
-            if isinstance(law, DryLaw):
-                raise InputError(
-                    f"roller contacts, films: got the law {law.name!r} without films; allowed: map, formula"
-                )
-            flat, tilted = self._rows(side, cage_angle)
-            delta = self._approach(flat, tilted, q)
-            memory = self._point(side, law, entrainment_speed, temperature).memory
+        dry = next((law.name for law in self.laws if isinstance(law, DryLaw)), None)
+        if dry is not None:
+            raise InputError(f"roller contacts, films: got the law {dry!r} without films; allowed: map, formula")
+        length, films, memories = self.bearing.slice_length, [], self.memories(entrainment_speed, temperature)
+        for side, (flat, tilted), delta in self._contacts(q, cage_angle):
+            memory = memories[side]
             begin = memory.settled(delta) if states is None else states[side]
             load, tangent, end = memory.advance(begin, delta, AT_REST if states is None else dt)
             films.append(begin if states is None else end)
@@ -195,15 +192,14 @@ class RollerContacts:
         cage_angle, entrainment_speed, temperature : float
             The same as for `BearingForce`.
         """
+        if any(isinstance(law, DryLaw) for law in self.laws):
+            return ()
+        points = self._film_points(entrainment_speed, temperature)
         q = self._vector("displacement", displacement)
-        found = []
-        for side, law in enumerate(self.laws):
-            if isinstance(law, DryLaw):
-                return ()
-            rows = self._rows(side, cage_angle)
-            point, approach = self._point(side, law, entrainment_speed, temperature), self._approach(*rows, q)
-            found.append(Side(point, np.stack(rows, axis=1), approach, self._x, self.bearing.slice_length))
-        return tuple(found)
+        return tuple(
+            Side(points[side], np.stack(rows, axis=1), approach, self._x, self.bearing.slice_length)
+            for side, rows, approach in self._contacts(q, cage_angle)
+        )
 
     def settled(
         self,
@@ -268,16 +264,18 @@ class RollerContacts:
             Angle of the first roller [rad].
         """
         q = self._vector("displacement", displacement)
-        inner, outer = (self._approach(*self._rows(side, cage_angle), q) for side in (0, 1))
+        inner, outer = (approach for _, _, approach in self._contacts(q, cage_angle))
         return inner, outer
 
     def memories(self, entrainment_speed: float, temperature: float) -> tuple[FilmMemory, FilmMemory]:
         """Laws with memory of both contacts at a speed [m/s] and temperature [K]; for laws with films only."""
-        memories = []
-        for side, law in enumerate(self.laws):
-            assert not isinstance(law, DryLaw)
-            memories.append(self._point(side, law, entrainment_speed, temperature).memory)
-        return memories[0], memories[1]
+        inner, outer = (point.memory for point in self._film_points(entrainment_speed, temperature))
+        return inner, outer
+
+    def _film_points(self, speed: float, temperature: float) -> list[LawAtPoint]:
+        """Laws of both contacts at a speed and temperature; for laws with films only."""
+        films = [law for law in self.laws if not isinstance(law, DryLaw)]
+        return [self._point(side, law, speed, temperature) for side, law in enumerate(films)]
 
     def _rows(self, side: int, cage_angle: float) -> tuple[FloatArray, FloatArray]:
         """Approach (Z, m) of the contacts by the displacements, and how it grows along the roller."""
@@ -292,10 +290,13 @@ class RollerContacts:
         tilted[:, 10], tilted[:, 11] = 0.5 * s, -0.5 * c
         return flat, tilted
 
-    def _approach(self, flat: FloatArray, tilted: FloatArray, q: FloatArray) -> FloatArray:
-        """Approach of the slices of one side, shape (Z, n)."""
-        approach: FloatArray = (flat @ q)[:, None] + self._x * (tilted @ q)[:, None] - self._depths
-        return approach
+    def _contacts(
+        self, q: FloatArray, cage_angle: float
+    ) -> Iterator[tuple[int, tuple[FloatArray, FloatArray], FloatArray]]:
+        """Each side, its rows, and the approach of its slices, shape (Z, n)."""
+        for side in (0, 1):
+            flat, tilted = self._rows(side, cage_angle)
+            yield side, (flat, tilted), (flat @ q)[:, None] + self._x * (tilted @ q)[:, None] - self._depths
 
     def _matrix(self, flat: FloatArray, tilted: FloatArray, values: FloatArray) -> FloatArray:
         """Sum of values B B^T over the slices."""
@@ -340,15 +341,8 @@ class RollerContacts:
 
     def _vector(self, name: str, given: npt.ArrayLike) -> FloatArray:
         """Finite numbers, as many as there are displacements."""
-        try:
-            values = np.array(given, dtype=np.float64)
-        except (TypeError, ValueError):
-            raise InputError(f"roller contacts, {name}: got {given!r}; allowed: real numbers") from None
-        if values.shape != (self.size,):
-            raise InputError(
-                f"roller contacts, {name}: got an array of shape {values.shape}; allowed: ({self.size},), "
-                "the inner pose, the outer pose and the rollers"
-            )
+        wanted = "", self.size, "the inner pose, the outer pose and the rollers"
+        values = real_numbers(f"roller contacts, {name}", given, wanted)
         if not np.all(np.isfinite(values)):
             raise InputError(f"roller contacts, {name}: got {values.tolist()}; allowed: finite numbers")
         return values

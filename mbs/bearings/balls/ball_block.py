@@ -10,8 +10,7 @@ from ehdmaps.kernel.record import numbers
 from mbs.bearings.balls.ball_data import COLUMNS, START, BallShape
 from mbs.bearings.balls.ball_speed import Drive, dry_energy
 from mbs.bearings.balls.laws import NODES
-from mbs.bearings.locating.locating_block import LocatingBlock, PairBlock, felt_rows
-from mbs.model.blocks import Kind
+from mbs.bearings.locating.locating_block import LocatingBlock, PairBlock, kind_of
 
 
 class Balls(PairBlock):
@@ -81,11 +80,5 @@ class BallBlock(LocatingBlock):
         return dry_energy(self.arrays["rows"][b, : self.size(b)])
 
 
-BALLS = Kind(
-    answer="ehd_ball_block_answer",
-    feels=felt_rows,
-    gather=BallBlock,
-    accept="ehd_ball_block_accept",
-    powers="ehd_ball_block_powers",
-)
+BALLS = kind_of(BallBlock)
 """For `mbs.transient.kinds`."""

@@ -20,7 +20,7 @@ from mbs.bearings.locating.film_memory import FilmsInTime, no_memory, rows_of
 from mbs.bearings.locating.film_tables import FilmCourse, FilmData
 from mbs.bearings.locating.locating_element import LocatingElement, LocatingStates
 from mbs.bearings.locating.locating_force import LAST
-from mbs.model.blocks import Member
+from mbs.model.blocks import Kind, Member
 
 FELT = np.array([0, 1, 2, 4, 5])
 """Displacements of its port that a bearing feels."""
@@ -67,17 +67,6 @@ class PairBlock(Record):
         "last": ("count", "longest", LAST),
         "clock": (2,),
     }
-
-
-def felt_rows(element: object) -> FloatArray:
-    """Rows of what a bearing feels of its port; see `mbs.model.blocks.Kind`.
-
-    Parameters
-    ----------
-    element : object
-        The bearing.
-    """
-    return np.asarray(np.eye(6)[FELT])
 
 
 class LocatingBlock:
@@ -206,3 +195,9 @@ class LocatingBlock:
             if element.relaxes:
                 force = element.force
                 self._memory(b)[:] = one.films.memory if one.films else no_memory(force.contacts, len(force.shorter))
+
+
+def kind_of(block: type[LocatingBlock]) -> Kind:
+    """Kind of bearings for `mbs.transient.kinds`, by their block."""
+    answer, accept, powers = (f"{block.name}_{what}" for what in ("answer", "accept", "powers"))
+    return Kind(answer, lambda element: np.asarray(np.eye(6)[FELT]), block, accept=accept, powers=powers)

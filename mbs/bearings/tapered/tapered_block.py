@@ -8,12 +8,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ehdmaps.kernel.record import numbers
-from mbs.bearings.locating.locating_block import LocatingBlock, PairBlock, felt_rows
+from mbs.bearings.locating.locating_block import LocatingBlock, PairBlock, kind_of
 from mbs.bearings.locating.locating_force import FASTEST
 from mbs.bearings.tapered.kernel_structs import COLUMNS, TaperedData, data_of, functions
 from mbs.bearings.tapered.line_film import NODES
 from mbs.bearings.tapered.tapered_bearing import dry_energy
-from mbs.model.blocks import Kind
 
 
 class Tapered(PairBlock):
@@ -76,11 +75,5 @@ class TaperedBlock(LocatingBlock):
         return dry_energy(force.dry_law.inner, force.shape, self.arrays["rollers"][b, : self.size(b)])
 
 
-TAPERED = Kind(
-    answer="ehd_taper_block_answer",
-    feels=felt_rows,
-    gather=TaperedBlock,
-    accept="ehd_taper_block_accept",
-    powers="ehd_taper_block_powers",
-)
+TAPERED = kind_of(TaperedBlock)
 """For `mbs.transient.kinds`."""

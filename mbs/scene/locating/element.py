@@ -30,8 +30,6 @@ class _Kind:
 
     Attributes
     ----------
-    element : type
-        Class of the element.
     allowed : str
         Laws with which it has films, in a message.
     words : callable
