@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
@@ -9,10 +10,11 @@ import pytest
 
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
+from ehdmaps.physics.point.ball_geometry import HYPOTHESES
 from ehdmaps.table.points.file import shipped_point_table
 from ehdmaps.table.points.response import read_response
 from mbs.bearings.balls.ball_bearing import BallForce
-from mbs.bearings.balls.balls_in_balance import ball_relaxation
+from mbs.bearings.balls.balls_in_balance import ball_relaxation, balls_in_balance
 from mbs.bearings.balls.films import ball_films
 from mbs.bearings.locating.normal_law import contact
 from mbs.linearised.linear import frequency_response
@@ -108,6 +110,20 @@ def test_springs_are_the_balls_in_balance_and_take_up_energy(name, rpm, pose):
     # films of slow motion would have much more damping at 20 kHz
     assert Z[4, 1, 1].imag < 0.7 * (s[4] * C[1, 1]).imag
     assert np.abs(balls.traction).max() < 0.1 * balls.load[1].max()
+
+
+@pytest.mark.parametrize("hypothesis", HYPOTHESES)
+def test_slow_motion_of_balls_in_balance_is_that_of_their_force(hypothesis):
+    """K and C of the balls condensed in Python, by closed formulas, and by the force in C, whichever axis they turn
+    about and whichever raceway holds them: round-off."""
+    geometry = dataclasses.replace(ball_estimate("7208B").with_clearance(0.0), hypothesis=hypothesis)
+    speed, pose = 12e3 * math.pi / 30.0, [15e-6, 4e-6, -2e-6, 0.0, 1e-4, 0.0]
+    films = ball_films(geometry, OIL, geometry.entrainment_speed(speed, 0.0), KELVIN, solves=False)
+    force, conditions = BallForce(geometry, films.law), {"inner_speed": speed}
+    _, K, C = force(pose, **conditions)
+    condensed = balls_in_balance(force, force.loads(pose, **conditions), conditions, relaxes=True)
+    np.testing.assert_allclose(condensed.stiffness, K, atol=1e-12 * np.abs(K).max())
+    np.testing.assert_allclose(condensed.damping, C, atol=1e-12 * np.abs(C).max())
 
 
 def test_balls_in_line_are_two_contacts_in_series():
