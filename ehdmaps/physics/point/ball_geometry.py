@@ -36,8 +36,8 @@ LARGEST_ANGLE = math.radians(60.0)
 """Largest nominal contact angle [rad]."""
 
 _CONFORMITIES = (0.5, 1.0)
-_SPHERE = 20.0
-"""Largest radius of a sphere over the ball diameter."""
+_SPHERE, _OFF_MIDDLE = 20.0, 0.25
+"""Largest radius of a sphere over the ball diameter; how far it may be off the one about the middle (estimates)."""
 
 
 class BallRow(NamedTuple):
@@ -348,6 +348,12 @@ def _problems(geometry: BallGeometry) -> list[str]:
         problems.append(
             f"{where}: got {count} balls of {1e3 * geometry.ball_diameter:.4g} mm on a pitch diameter of "
             f"{1e3 * geometry.pitch_diameter:.4g} mm; allowed: balls that have room beside each other"
+        )
+    middle = 0.5 + 0.5 * geometry.pitch_diameter / (geometry.ball_diameter * math.cos(geometry.contact_angle))
+    if geometry.spherical and abs(geometry.outer_conformity / middle - 1.0) > _OFF_MIDDLE:
+        problems.append(
+            f"{where}, outer_conformity: got {geometry.outer_conformity:.4g}; allowed: above 0.5 and at most 1; it is "
+            f"radius over ball diameter; or that of a sphere about the middle of the bearing, {middle:.4g}"
         )
     if not abs(geometry.clearance) < geometry.groove_distance * math.cos(geometry.contact_angle):
         problems.append(
