@@ -40,5 +40,7 @@ def coarse_tables() -> Iterator[None]:
 @contextlib.contextmanager
 def fine_tables() -> Iterator[None]:
     """Make them as users have them, for a while."""
+    forget()
     with mock.patch.object(EHDMap, "_resolution", _OWN):
         yield
+    forget()

@@ -50,7 +50,7 @@ COMMANDS = (
     Command("statics", output="-o result.nc"),
     Command("modes", output="-o result.nc", turned=1),
     Command("lsa", output="-o result.nc"),
-    Command("sweep", ("--workers", "1"), output="-o result.nc"),
+    Command("sweep", ("--workers", "1"), output="-o result.nc", turned=1),
     Command("critical", output="-o result.nc", turned=0),
     Command("hammer", ("--hits", "1", "--duration", "20 ms", "--workers", "1"), output="-o result.uff", turned=1),
     Command("report", output="-o result.html", slow=True, only=PAGES),

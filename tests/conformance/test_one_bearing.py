@@ -101,6 +101,7 @@ def test_heat_in_the_inlet_thins_films_of_every_kind(name, capsys, tmp_path, mon
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("fine_laws")
 @pytest.mark.parametrize("name", ["6208", "32208"])
 def test_bearings_with_axial_load_take_an_oil_layer(name, capsys, tmp_path, monkeypatch):
     """A thick one is flooded, to what the cap of the films lets through; a thin one leaves less to damp."""

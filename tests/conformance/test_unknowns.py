@@ -20,7 +20,11 @@ from tests.conformance.test_one_bearing import KINDS as DESIGNATIONS
 
 WITH_FILMS = [machine for machine in (*KINDS, *MIXED[:2]) if machine.films]
 NAMES = [machine.name for machine in WITH_FILMS]
-FEWER = [one for one in WITH_FILMS if one.name not in ("needle", "ribbed NJ", "rollers as bodies")]
+FEWER = [
+    one
+    for one in WITH_FILMS
+    if one.name not in ("hybrid, thin section", "needle", "ribbed NJ", "rollers as bodies", "self-aligning")
+]
 """Machines whose bands are compared: bearings of the others have the laws, or the ribs, of one that is here."""
 
 KNOWN = {
@@ -108,11 +112,12 @@ COMMANDS = {
     "sweep": ("complex_frequency", "complex_damping_ratio"),
     "critical": ("critical_speed", "critical_damping_ratio"),
 }
-IN_TURN = [(machine, list(COMMANDS)[place % len(COMMANDS)]) for place, machine in enumerate(WITH_FILMS)]
+BODIES = next(one for one in WITH_FILMS if one.name == "rollers as bodies")
+IN_TURN = [(machine, list(COMMANDS)[place % len(COMMANDS)]) for place, machine in enumerate([*FEWER, BODIES])]
 """Each machine has one of these commands: bounds of a kind are those of its statics, and of a command of all kinds."""
 
 
-@pytest.mark.parametrize(("one", "command"), IN_TURN, ids=NAMES)
+@pytest.mark.parametrize(("one", "command"), IN_TURN, ids=[one.name for one, _ in IN_TURN])
 @pytest.mark.slow
 def test_responses_and_speeds(one, command, here, capsys):
     """Values lie within their bounds, some of which are apart."""

@@ -106,10 +106,8 @@ def test_forces(law, used):
 
 
 SCENES = {
-    "rollers": lambda: read_scene("nu308_rigid"),
     "bodies": lambda: _with(read_scene("nu308_rigid"), rollers_as_bodies=True),
     "coupled": lambda: _with(read_scene("nu308_rigid"), slices_coupled=True, slices=5),
-    "balls": lambda: read_scene("electric_drive"),
     "tapered, ribs, balls": lambda: parse_scene(MASSES, "masses", "masses.toml"),
     "gears, housing, two kinds": lambda: read_scene("two_stage"),
 }
