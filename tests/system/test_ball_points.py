@@ -83,7 +83,7 @@ def test_what_balls_do_not_take_is_refused(capsys, more, words):
     assert words in err
 
 
-@pytest.mark.parametrize("command", ["check", "report", "tradeoff", "length"])
+@pytest.mark.parametrize("command", ["check", "report", "tradeoff"])
 def test_commands_of_lines_say_what_takes_balls(tmp_path, monkeypatch, capsys, command):
     monkeypatch.chdir(tmp_path)
     assert cli.main([command, "6208-2RS"]) == 2

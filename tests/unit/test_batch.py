@@ -248,7 +248,7 @@ def test_check_tells_what_is_solved_and_other_commands_refuse_a_batch(tmp_path, 
     assert "2 maps, from NU308_FVA3 to N1014_FVA3" in told
     assert "2 maps are solved at their own points" in told
     assert "points  32 to solve" in told
-    assert cli.main(["length", source]) == 2
+    assert cli.main(["solids", source]) == 2
     assert "is a batch file, of many jobs; allowed: one job" in capsys.readouterr().err
 
 
