@@ -25,7 +25,7 @@ static ehd_pair_law pair_law(int dry) {
 static int balls(void) {
     const int64_t count = up_to(12);
     const double apart = 0.4e-3, angle = part() < 0.5 ? 0.0 : 0.7 * (part() - 0.5), arm = 22e-3;
-    double pose[6], out[78], law[3], held[3], *cosine = room(count), *sine = room(count), *kept = room(6 * count);
+    double pose[6], out[78], law[3], held[3], *cosine = room(count), *sine = room(count), *kept = room(2 * EHD_BALL_MEMORY * count);
     double *rows = room(4 * count);
     const int one = part() < 0.5;
     ehd_ball_start *start = calloc((size_t)count, sizeof *start);
@@ -40,10 +40,16 @@ static int balls(void) {
         rows[4 * j + 2] = number(1e-5);
         rows[4 * j + 3] = j + 1 < count && part() < 0.5 ? 1.0 : 0.0;
     }
-    for (int64_t i = 0; i < 6 * count; i++) kept[i] = number(i % 3 == 0 ? 100.0 : i % 3 == 1 ? 1e8 : 1e-6);
+    for (int64_t i = 0; i < 2 * count; i++) {
+        double *contact = kept + i * EHD_BALL_MEMORY;
+        memset(contact, 0, sizeof(double) * EHD_BALL_MEMORY);
+        contact[EHD_PAIR_PULL] = number(100.0);
+        contact[EHD_PAIR_SPRING] = number(1e8);
+        contact[EHD_PAIR_AT] = number(1e-6);
+    }
     ehd_ball_data data = {{apart * sin(angle), apart * cos(angle) - 1e-5 * (part() - 0.5), arm, 0.5 * apart, 0.5 * apart,
                            apart, apart / arm},
-                          {0.0, 0.0, part() < 0.2 ? 100.0 * part() : NAN, 0.2, 1e-4, 5e-5},
+                          {0.0, 0.0, part() < 0.2 ? 100.0 * part() : NAN, 0.2, 1e-4, 5e-5, (double)(any() % 4)},
                           0.0, 0.0, count, cosine, sine, one ? NULL : rows, with_memory ? kept : NULL, pair_law(dry), pair_law(dry)};
     for (int turn = 0; turn < 4; turn++) {
         double size = 0.0, kept_size = 0.0;
@@ -53,7 +59,7 @@ static int balls(void) {
         data.cage_angle = number(3.0);
         size = fabs(data.drive.inner) + fabs(data.drive.outer);
         data.rest = ehd_pair_approach(&data.outer, 1e-4 * number(500.0), number(1e-6));
-        for (int64_t i = 0; with_memory && i < 6 * count; i++) kept_size += fabs(kept[i]);
+        for (int64_t i = 0; with_memory && i < 2 * EHD_BALL_MEMORY * count; i++) kept_size += fabs(kept[i]);
         const int loaded = ehd_ball_force_surely(&data, pose, start, found, out, out + 6, out + 42);
         if (loaded > count) failed = 10;
         for (int i = 0; i < 78; i++)

@@ -431,24 +431,27 @@ static int tapered(void) {
         springs[2 * i + 1] = 1e-4 * part();
     }
     for (int64_t n = 0; memory && n < 2 * rollers; n++)
-        for (int64_t i = 0; i < slices; i++) memory[(n * EHD_TAPER_MEMORY + EHD_TAPER_TIME) * slices + i] = 1.0;
+        for (int64_t i = 0; i < slices; i++) memory[(n * EHD_TAPER_MEMORY + EHD_PAIR_TIME) * slices + i] = 1.0;
     const ehd_taper_data data = {rollers, slices, ribs, 0.03, {0.24, 0.97}, {0.18, 0.98}, 1e-6 * part(), 1e-3, 3e-2,
                                  1e9, any() % 2 ? 10.0 : 0.0, 1e-5, rib, lever, profile, cosine, sine};
     const double step = 10.0 / (double)(rows + 1);
     const ehd_pair_law line = {rows ? 1.0 : 5e8, data.damping, 1e-5, 0.0, 3e-7, -3.0, step, rows, table};
     const ehd_pair_law law[2] = {line, line};
-    const ehd_taper_springs both = {{springs, springs}, {springs, springs}, part()};
+    const double shorter[EHD_TAPER_SPRINGS] = {1.0};
+    const ehd_pair_springs both = {EHD_TAPER_SPRINGS, shorter, {springs, springs}, {springs, springs}, part()};
+    double *approaches = room(slices);
     for (int n = 0; n < 6 && !failed; n++) {
         const double loads[3] = {0.0, number(100.0), number(1.0)};
         ehd_taper_answer answer;
         double pose[6];
         for (int i = 0; i < 6; i++) pose[i] = number(i < 3 ? 3e-5 : 1e-3);
-        if (memory) ehd_taper_hold(rollers, slices, 1e-4 * part(), memory);
+        if (memory) ehd_pair_hold(2 * rollers, slices, EHD_TAPER_SPRINGS, shorter, 1e-4 * part(), memory);
         if (ehd_taper_force(&data, law, pose, number(3.0), loads, memory, found, &answer) < 0) continue;
-        if (memory) ehd_taper_go_on(&data, law, &both, found, memory);
+        if (memory) ehd_taper_go_on(&data, law, &both, found, approaches, memory);
         for (int i = 0; i < 6; i++)
             if (!isfinite(answer.force[i])) failed = 8;
     }
+    free(approaches);
     free(lever);
     free(profile);
     free(cosine);
