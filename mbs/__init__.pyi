@@ -61,5 +61,6 @@ from mbs.settings import CampbellSettings as CampbellSettings
 from mbs.settings import RunUp as RunUp
 from mbs.settings import Settings as Settings
 from mbs.settings import SweepRange as SweepRange
+from mbs.unknowns.statement import know as know
 
 __version__: str

@@ -166,6 +166,30 @@ def known(scene: Scene, statements: tuple[Statement, ...]) -> Scene:
     return scene
 
 
+def know(scene: Scene, text: str) -> Scene:
+    """The scene with statements on how well its numbers are known, as `--know` of a command makes them.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    text : str
+        Statements, such as "clearance of drive = 20 um +- 5 um; temperature = +- 2 K".
+
+    Raises
+    ------
+    InputError
+        For what is no statement, or not of this scene.
+    """
+    from mbs.scene.changes import with_temperature
+
+    statements = read_statements(text)
+    for one in statements:
+        if one.group == "temperature" and one.value is not None:
+            scene = with_temperature(scene, one.value)
+    return known(scene, statements)
+
+
 def taken_out(values: dict[str, Any], problems: list[str]) -> tuple[dict[str, Any], dict[str, Tolerance]]:
     """Tables of a scene file with plain values in place of values with tolerances, and these tolerances.
 

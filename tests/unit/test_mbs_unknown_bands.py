@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import ehdmaps
+import mbs
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.units import Tolerance
 from mbs.analyses.modes import modes
@@ -19,7 +21,7 @@ from mbs.linearised.pairs import in_order
 from mbs.output.band_text import bounds_text, deserved, exact_text, lost_lines, value_text
 from mbs.scene.assembly import assemble
 from mbs.scene.changes import with_temperature
-from mbs.scene.reader import read_scene
+from mbs.scene.reader import parse_scene, read_scene
 from mbs.settings import SweepRange
 from mbs.unknowns import held_open
 from mbs.unknowns.looks import Band, Term, band
@@ -49,6 +51,41 @@ def look(scene, standing):
 def found(*unknowns, numerics=0.0):
     """The band by some unknowns."""
     return band(look, CENTRE, unknowns, np.full(2, numerics))
+
+
+def test_machines_from_a_file_and_from_python_have_the_same_bands():
+    """Values with their tolerances in a file; in Python a machine put together from parts, and statements of `know`."""
+    text = read_scene("nu308_rigid").text
+    for plain, told in (('"0 um"', '"20 um +- 2 um"'), ('temperature = "40 degC"', 'temperature = "50 degC +- 1 K"')):
+        assert plain in text
+        text = text.replace(plain, told)
+    file = parse_scene(text, "file", "file.toml")
+    elements = [by_hand(one) if isinstance(one, mbs.BearingSpec) else one for one in file.elements]
+    held = {one.name: getattr(file, one.name) for one in dataclasses.fields(mbs.Scene)}
+    own = mbs.Scene(**{**held, "name": "own", "temperature": 313.15, "elements": elements, "tolerances": {}})
+    # a profile that a file states is exact; in Python it is not told from the default
+    own = mbs.know(own, "clearance = 20 um +- 2 um; temperature = 50 degC +- 1 K; profile = +- 0 %")
+    bands = [mbs.modes(assemble(scene, "formula")).bands for scene in (file, own)]
+    for name in ("frequency", "damping_ratio"):
+        first, second = (getattr(one, name) for one in bands)
+        assert {term.name for term in first.terms} == {term.name for term in second.terms}
+        for side in ("low", "high"):
+            np.testing.assert_allclose(getattr(second, side), getattr(first, side), rtol=1e-9)
+    close = mbs.modes(assemble(mbs.know(own, "clearance = +- 0 um"), "formula")).bands
+    assert np.all(close.frequency.high - close.frequency.low <= second_width(bands[1]))
+    with pytest.raises(InputError, match="allowed: clearance"):
+        mbs.know(own, "clearnce = 1 um")
+
+
+def by_hand(one):
+    """A bearing of the same place, put together anew."""
+    geometry = ehdmaps.BearingGeometry.named("NU308")
+    return mbs.BearingSpec(one.name, one.inner, one.outer, geometry, profile=one.profile, slices=one.slices)
+
+
+def second_width(bands):
+    """Widths of the bands of frequencies, and round-off."""
+    return (bands.frequency.high - bands.frequency.low) * (1.0 + 1e-9)
 
 
 def test_nine_tenths_of_drawn_machines_are_inside():
