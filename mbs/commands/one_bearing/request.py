@@ -82,7 +82,7 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
     lack = f"with dry contacts; allowed: with --law {TABLE_LAW}" if dry else ""
     if law == "map" or law in FORMULAS:
         lack = f"without films of the film table; allowed: with --law {TABLE_LAW}"
-    heat = read_heat(chosen, oil, lack, problems)
+    heat, said = read_heat(chosen, oil, lack, problems), "physics" in chosen
     if "supply" in chosen and dry and family.kind.axial:  # of others it is in the films of formulas, too
         problems.append(f"--supply: got {chosen['supply'].label} {lack}")
     problems += _output_problems(arguments, family, chosen, law)
@@ -104,6 +104,7 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
         *([f"combined rms roughness {MICROMETRE.text(ROUGHNESS)} (for Lambda only)"] if surface.smooth else []),
         *asked.assumed,
         *([f"oil {DEFAULT_OIL}"] if arguments.oil is None and stated is None else []),
+        *(["no heat in the films, as the oil has no thermal_conductivity"] if not (lack or heat or said) else []),
     )
     request = family.finished(
         Request(
