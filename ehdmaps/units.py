@@ -35,6 +35,7 @@ _UNIT = re.compile(rf"(?:1 ?/ ?)?\(?{_ATOM}(?:(?: ?[*/·] ?| )\(?{_ATOM}\)?)*")
 _COMMON: dict[str, dict[str, tuple[float, float]]] = {
     "N": {"kN": (1e3, 0.0)},
     "N/m": {"N/mm": (1e3, 0.0)},
+    "N/m^2": {"N/(um mm)": (1e9, 0.0)},
     "m": {"mm": (1e-3, 0.0), "um": (1e-6, 0.0)},
     "K": {"degC": (1.0, 273.15)},
     "Pa": {"MPa": (1e6, 0.0), "GPa": (1e9, 0.0)},

@@ -423,13 +423,15 @@ def _rolling_error(fine: Profile, coarse: Profile) -> float:
     """Relative error of the rolling force.
 
     Order four; behind a spike the film falls where the pressure does, within few cells and to first order only: there a
-    tenth of what the terms of fourth order change comes to it. At a meniscus the pressure rises where the film is
+    tenth of what the terms of fourth order change comes to it. Where an exit falls within one cell both grids may agree
+    by chance: all of that change is what the cell leaves open. At a meniscus the pressure rises where the film is
     thickest, which is as rough.
     """
     moved_by = abs(coarse.rolling_force / fine.rolling_force - 1.0)
-    if fine.spike is None and not fine.layout.starved and not _unresolved(fine):
+    unresolved = _unresolved(fine)
+    if fine.spike is None and not fine.layout.starved and not unresolved:
         return FOURTH * moved_by
-    return FIRST_ORDER * moved_by + 0.1 * fine.fourth_order_share
+    return FIRST_ORDER * moved_by + (1.0 if unresolved else 0.1) * fine.fourth_order_share
 
 
 def _offset_share(M: float, spike: bool) -> float:
