@@ -17,7 +17,7 @@ from ehdmaps.ehl.warm_response import WarmLinearisation, warm_linearised
 from ehdmaps.ehl.ways import LOAD
 from ehdmaps.physics.isotherm import log_viscosity
 from ehdmaps.physics.rheology import LIMITING, NEWTONIAN
-from ehdmaps.physics.solution import peak_sampling_error
+from ehdmaps.physics.solution import UNKNOWN, Estimate, peak_sampling_error
 
 SPIKE_SHIFT = 1e-4
 """Shift of the spike, in its widths, over which the effect of the grid's motion is differenced."""
@@ -78,11 +78,11 @@ MOST_TIP = 5.0
 
 @dataclass(frozen=True)
 class GroupSolution:
-    """Film of one point in units of b, p_H, b^2/R and b/u, with estimated relative errors.
+    """Film of one point in units of b, p_H, b^2/R and b/u, each number with its estimated error.
 
     The rolling force has the unit p_H b^2/R, the mass flow b^2/R times density at rest and u. Rises are those of the
-    highest temperatures in the film and of its surfaces [K], NaN of an isothermal film; their errors are in K, too.
-    Those of film offset, film compliance and loss are positive where the value is too large, the others always.
+    highest temperatures in the film and of its surfaces [K], NaN of an isothermal film; their errors are in K.
+    Errors of film offset, film compliance and loss are positive where the value is too large, the others always.
     `profile` is the fine solution and `rough` the coarse one, `linear` and `rough_linear` the equations about them;
     None where there is none.
     """
@@ -92,24 +92,16 @@ class GroupSolution:
     rough: Profile | None = None
     linear: Linearisation | WarmLinearisation | None = None
     rough_linear: Linearisation | WarmLinearisation | None = None
-    film_offset: float = math.nan
-    film_compliance: float = math.nan
-    loss: float = math.nan
-    central_film: float = math.nan
-    minimum_film: float = math.nan
-    max_pressure: float = math.nan
-    rolling_force: float = math.nan
-    mass_flow: float = math.nan
+    film_offset: Estimate = UNKNOWN
+    film_compliance: Estimate = UNKNOWN
+    loss: Estimate = UNKNOWN
+    central_film: Estimate = UNKNOWN
+    minimum_film: Estimate = UNKNOWN
+    max_pressure: Estimate = UNKNOWN
+    rolling_force: Estimate = UNKNOWN
+    mass_flow: Estimate = UNKNOWN
     film_rise: float = math.nan
     surface_rise: float = math.nan
-    film_offset_error: float = math.nan
-    film_compliance_error: float = math.nan
-    loss_error: float = math.nan
-    central_film_error: float = math.nan
-    minimum_film_error: float = math.nan
-    max_pressure_error: float = math.nan
-    rolling_force_error: float = math.nan
-    mass_flow_error: float = math.nan
     film_rise_error: float = math.nan
     surface_rise_error: float = math.nan
     steps: int = 0
@@ -153,17 +145,17 @@ def assembled(
     scale = fine.mass_flow / coarse.mass_flow if starved else 1.0
     central_error, minimum_error = _film_errors(fine, coarse, scale, by_offset)
 
-    def error(
+    def estimate(
         value: float, rough_value: float, share: float, lost: float, least: float = 0.0, front: float = 0.0
-    ) -> float:
-        """Relative, > 0 where refinement lowers the value.
+    ) -> Estimate:
+        """The value with its error, > 0 where refinement lowers it.
 
         `least` is a difference of grids that this value shares at least, `lost` what the inlet's end takes away, and
         `front` what a front adds.
         """
         grid = (rough_value - value) * share / value
         size = max(abs(grid), abs(least * share / value)) + abs(front / value)
-        return _with_inlet(math.copysign(size, grid), lost * inlet)
+        return Estimate(value, _with_inlet(math.copysign(size, grid), lost * inlet))
 
     # parts of one complex number: where a spike between two nodes hides the error of the loss, the compliance shows it
     hidden = rough.compliance - response.compliance if fine.spike is not None or starved else 0.0
@@ -176,32 +168,25 @@ def assembled(
     held = max(fronts[0].offset, 0.5 * fronts[1].offset)
     by_front = held / abs(fine.film_offset)
     film_error, surface_error = _rise_errors(fine, coarse)
+    flow_error = 0.0 if starved else abs(estimate(fine.mass_flow, coarse.mass_flow, FOURTH, FILM_LOST).error)
     solution = GroupSolution(
         outcome=CONVERGED,
         profile=fine,
         rough=coarse,
         linear=linear,
         rough_linear=rough_linear,
-        film_offset=fine.film_offset,
-        film_compliance=response.compliance,
-        loss=response.loss,
-        central_film=central,
-        minimum_film=minimum,
-        max_pressure=float(np.max(fine.pressure)),
-        rolling_force=fine.rolling_force,
-        mass_flow=fine.mass_flow,
-        film_rise=math.nan if fine.warmth is None else float(np.max(fine.warmth.rises)),
-        surface_rise=math.nan if fine.warmth is None else float(np.max(fine.warmth.rises[:, [0, -1]])),
-        film_offset_error=error(fine.film_offset, scale * coarse.film_offset, by_offset, FILM_LOST, front=held),
-        film_compliance_error=error(
+        film_offset=estimate(fine.film_offset, scale * coarse.film_offset, by_offset, FILM_LOST, front=held),
+        film_compliance=estimate(
             response.compliance, rough.compliance, by_response, COMPLIANCE_LOST, hidden_too, at_front.compliance
         ),
-        loss_error=error(response.loss, rough.loss, by_response, LOSS_LOST, hidden, at_front.loss),
-        central_film_error=central_error + by_front + FILM_LOST * inlet,
-        minimum_film_error=minimum_error + by_front + FILM_LOST * inlet,
-        max_pressure_error=_peak_error(fine, coarse),
-        rolling_force_error=_rolling_error(fine, coarse) + ROLLING_GAINED * inlet,
-        mass_flow_error=0.0 if starved else abs(error(fine.mass_flow, coarse.mass_flow, FOURTH, FILM_LOST)),
+        loss=estimate(response.loss, rough.loss, by_response, LOSS_LOST, hidden, at_front.loss),
+        central_film=Estimate(central, central_error + by_front + FILM_LOST * inlet),
+        minimum_film=Estimate(minimum, minimum_error + by_front + FILM_LOST * inlet),
+        max_pressure=Estimate(np.max(fine.pressure), _peak_error(fine, coarse)),
+        rolling_force=Estimate(fine.rolling_force, _rolling_error(fine, coarse) + ROLLING_GAINED * inlet),
+        mass_flow=Estimate(fine.mass_flow, flow_error),
+        film_rise=math.nan if fine.warmth is None else float(np.max(fine.warmth.rises)),
+        surface_rise=math.nan if fine.warmth is None else float(np.max(fine.warmth.rises[:, [0, -1]])),
         film_rise_error=film_error,
         surface_rise_error=surface_error,
         steps=steps,
@@ -250,10 +235,14 @@ def _with_error_across(
     share = points_share(profile.points, witness.points)
     towards = 1.0 if profile.points < witness.points else -1.0
 
-    def added(name: str, here: float, there: float) -> float:
-        """Stated error of a number with what the points leave of it, > 0 where the value is too large."""
-        stated, left = getattr(solution, f"{name}_error"), towards * share * (here - there) / getattr(solution, name)
-        return math.copysign(abs(stated) + abs(left), stated if abs(stated) > abs(left) else left)
+    def signed(value: Estimate, here: float, there: float) -> Estimate:
+        """A number with what the points leave of it in its error, > 0 where the value is too large."""
+        stated, left = value.error, towards * share * (here - there) / value
+        return Estimate(value, math.copysign(abs(stated) + abs(left), stated if abs(stated) > abs(left) else left))
+
+    def sized(value: Estimate, here: float, there: float) -> Estimate:
+        """The same without the sign of the error."""
+        return Estimate(value, abs(signed(value, here, there).error))
 
     def added_rise(name: str, where: slice | list[int]) -> float:
         """Stated error of a rise of temperature with what the points leave of it [K]."""
@@ -264,14 +253,14 @@ def _with_error_across(
     peak, other_peak = (float(np.max(each.pressure)) for each in (profile, witness))
     return replace(
         solution,
-        film_offset_error=added("film_offset", profile.film_offset, witness.film_offset),
-        film_compliance_error=added("film_compliance", response.compliance, other.compliance),
-        loss_error=added("loss", response.loss, other.loss),
-        central_film_error=abs(added("central_film", central, other_central)),
-        minimum_film_error=abs(added("minimum_film", minimum, other_minimum)),
-        max_pressure_error=abs(added("max_pressure", peak, other_peak)),
-        rolling_force_error=abs(added("rolling_force", profile.rolling_force, witness.rolling_force)),
-        mass_flow_error=abs(added("mass_flow", profile.mass_flow, witness.mass_flow)),
+        film_offset=signed(solution.film_offset, profile.film_offset, witness.film_offset),
+        film_compliance=signed(solution.film_compliance, response.compliance, other.compliance),
+        loss=signed(solution.loss, response.loss, other.loss),
+        central_film=sized(solution.central_film, central, other_central),
+        minimum_film=sized(solution.minimum_film, minimum, other_minimum),
+        max_pressure=sized(solution.max_pressure, peak, other_peak),
+        rolling_force=sized(solution.rolling_force, profile.rolling_force, witness.rolling_force),
+        mass_flow=sized(solution.mass_flow, profile.mass_flow, witness.mass_flow),
         film_rise_error=added_rise("film_rise", slice(None)),
         surface_rise_error=added_rise("surface_rise", [0, -1]),
     )

@@ -90,8 +90,8 @@ def in_contact(point: Point, found: GroupSolution) -> Structured[float]:
         found.film_offset * half * half / CONTACT.radius,
         found.film_compliance * compliance,
         found.loss * compliance * half / point.speed,
-        found.film_compliance_error,
-        found.loss_error,
+        found.film_compliance.error,
+        found.loss.error,
     )
 
 
@@ -115,17 +115,17 @@ def stated(point: Point, found: GroupSolution) -> np.ndarray:
     """Relative errors that the solution states of the same and of the largest pressure."""
     contact = in_contact(point, found)
     half = float(half_width(point.load, CONTACT.radius, CONTACT.reduced_modulus))
-    offset = abs(found.film_offset_error * found.film_offset * half * half / CONTACT.radius)
+    offset = abs(found.film_offset.error * found.film_offset * half * half / CONTACT.radius)
     return np.array(
         [
-            abs(found.film_offset_error),
-            abs(found.film_compliance_error),
-            found.central_film_error,
-            found.minimum_film_error,
+            abs(found.film_offset.error),
+            abs(found.film_compliance.error),
+            found.central_film.error,
+            found.minimum_film.error,
             contact.stiffness_error,
             contact.damping_error,
             offset / abs(contact.approach),
-            found.max_pressure_error,
+            found.max_pressure.error,
         ]
     )
 

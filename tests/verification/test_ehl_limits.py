@@ -52,7 +52,7 @@ def test_inlet_length() -> None:
     long, short = (solved(0.1, 0.0, density=20.0, inlet_length=x) for x in (2000.0, 60.0))
     lost = 1.0 - short.film_offset / long.film_offset
     assert lost == pytest.approx(2.4 / 60.0**2, rel=0.1)  # 10 %: the next term of the series
-    assert lost < short.film_offset_error < 5.0 * lost
+    assert lost < short.film_offset.error < 5.0 * lost
 
 
 def test_what_an_inlet_loses_and_what_is_stated() -> None:
@@ -67,7 +67,7 @@ def test_what_an_inlet_loses_and_what_is_stated() -> None:
     ):
         lost = 1.0 - getattr(short, name) / getattr(long, name)
         assert lost * 60.0**2 == pytest.approx(bound / 1.22, rel=0.03)  # 3 %: rounded, and the next term of the series
-        assert abs(lost) < abs(getattr(short, f"{name}_error")) < 1.3 * abs(lost)
+        assert abs(lost) < abs(getattr(short, name).error) < 1.3 * abs(lost)
 
 
 def test_default_inlet_loses_less_than_the_cells_add() -> None:

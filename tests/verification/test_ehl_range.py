@@ -180,7 +180,7 @@ def test_pressure_at_the_tip_of_a_spike() -> None:
     for point in spikes.random_points(8, 3):
         found = solve_groups(point.problem, point.M, point.L, Resolution())
         tip = float(np.median(spikes.tip_pressures(point, 14.0)))
-        assert abs(tip / found.max_pressure - 1.0) < found.max_pressure_error
+        assert abs(tip / found.max_pressure - 1.0) < found.max_pressure.error
 
 
 @pytest.mark.parametrize(

@@ -322,4 +322,4 @@ def test_stated_errors_cover_a_finer_grid(M, ratio):
     flow = fine.mass_flow / rough.mass_flow  # both have a part of their own flow
     for name in ("film_offset", "film_compliance", "loss", "central_film", "rolling_force"):
         error = abs(getattr(rough, name) / getattr(fine, name) - 1.0) - abs(flow - 1.0)
-        assert error <= 1.25 * abs(getattr(rough, f"{name}_error")), name
+        assert error <= 1.25 * abs(getattr(rough, name).error), name

@@ -124,8 +124,8 @@ def test_the_stated_errors_hold():
             continue
         truth = solve_groups(problem, M, L, Resolution(density=19.5), found.profile)
         within += [
-            abs(found.rolling_force / truth.rolling_force - 1.0) <= found.rolling_force_error,
-            abs(found.mass_flow / truth.mass_flow - 1.0) <= found.mass_flow_error,
+            abs(found.rolling_force / truth.rolling_force - 1.0) <= found.rolling_force.error,
+            abs(found.mass_flow / truth.mass_flow - 1.0) <= found.mass_flow.error,
         ]
     assert np.mean(within) >= 0.95
 

@@ -24,6 +24,7 @@ from ehdmaps.ehl.newton import CONVERGED
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.physics.isotherm import PressureViscosity
 from ehdmaps.physics.rheology import ShearLaw
+from ehdmaps.physics.solution import Estimate
 from ehdmaps.physics.viscosity import ROELANDS_PRESSURE
 from ehdmaps.table.coordinates import GRID, exponent_of, load_number_at, valley_shift
 from ehdmaps.table.fields import FIELDS, FILMS, LAW, NATURAL_FREQUENCIES, RESPONSES
@@ -187,29 +188,20 @@ def _reduced(M: float, L: float, groups: GroupSolution) -> tuple[FloatArray, Flo
     force = film * math.sqrt(M / (2.0 * math.pi)) / math.sqrt(0.5 * M)
     # eta u R/b^2 = (Us/2) E' R^2/b^2 over p_H b/R
     stress = 0.5 / film / (math.sqrt(M / (2.0 * math.pi)) * math.sqrt(film))
-    values = {
-        "film_offset": groups.film_offset * film,
-        "film_compliance": 4.0 * groups.film_compliance,
-        "loss_compliance": 4.0 * groups.loss,
-        "central_film": groups.central_film * film,
-        "minimum_film": groups.minimum_film * film,
-        "max_pressure": groups.max_pressure,
-        "rolling_force": groups.rolling_force * force,
-        "mass_flow": groups.mass_flow * film,
-        "wall_stress": profile.wall_stress * stress,
+    # of first order, as it is that of the steepest cell of a spike
+    steepest = Estimate(profile.wall_stress, 1.5 * abs(rough.wall_stress / profile.wall_stress - 1.0))
+    numbers = {
+        "film_offset": (groups.film_offset, film),
+        "film_compliance": (groups.film_compliance, 4.0),
+        "loss_compliance": (groups.loss, 4.0),
+        "central_film": (groups.central_film, film),
+        "minimum_film": (groups.minimum_film, film),
+        "max_pressure": (groups.max_pressure, 1.0),
+        "rolling_force": (groups.rolling_force, force),
+        "mass_flow": (groups.mass_flow, film),
+        "wall_stress": (steepest, stress),
     }
-    errors = {
-        "film_offset": groups.film_offset_error,
-        "film_compliance": groups.film_compliance_error,
-        "loss_compliance": groups.loss_error,
-        "central_film": groups.central_film_error,
-        "minimum_film": groups.minimum_film_error,
-        "max_pressure": groups.max_pressure_error,
-        "rolling_force": groups.rolling_force_error,
-        "mass_flow": groups.mass_flow_error,
-        # of first order, as it is that of the steepest cell of a spike
-        "wall_stress": 1.5 * abs(rough.wall_stress / profile.wall_stress - 1.0),
-    }
+    found = [numbers[field.name] for field in FILMS]
     # omega sqrt(b^2 + 2 h R)/u, with h R/b^2 the film offset in Hertz' units
     frequencies = np.array(NATURAL_FREQUENCIES) / math.sqrt(1.0 + 2.0 * groups.film_offset)
     spectrum = group_spectrum(M, L, groups, frequencies)
@@ -218,8 +210,8 @@ def _reduced(M: float, L: float, groups: GroupSolution) -> tuple[FloatArray, Flo
     parts = np.column_stack([response.real, response.imag]).ravel()
     part_errors = np.repeat(wrong, 2) / np.abs(parts)
     return (
-        np.r_[[values[field.name] for field in FILMS], parts],
-        np.r_[[abs(errors[field.name]) for field in FILMS], part_errors],
+        np.r_[[number * unit for number, unit in found], parts],
+        np.r_[[abs(number.error) for number, _ in found], part_errors],
     )
 
 
