@@ -612,14 +612,14 @@ def test_the_page_names_what_it_shows(tmp_path, monkeypatch):
 
 
 def test_a_long_legend_stays_on_the_page():
-    """By what is drawn: the right edge of the legend in pixels."""
+    """By what is drawn: the right edge of the legend in pixels. Versions of the library differ in the width of letters."""
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
     figure = Figure(figsize=(11.7, 8.3))
-    for words, columns in (("short", 3), ("asymptote: film thicker than 1 % of the radius " * 2, 2)):
+    for words, columns in (("short", {3}), ("asymptote: film thicker than 1 % of the radius " * 2, {1, 2})):
         legend = page_legend(figure, [Line2D([], [], label=words) for _ in range(4)])
-        assert legend._ncols == columns and legend.get_window_extent().x1 <= figure.bbox.x1
+        assert legend._ncols in columns and legend.get_window_extent().x1 <= figure.bbox.x1
 
 
 def test_unmet_bars_are_said_with_what_helps():
