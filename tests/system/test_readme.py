@@ -51,7 +51,7 @@ def test_script_prints_what_is_shown(made_map, monkeypatch, capsys):
 
 def test_blocks_of_python_compile():
     blocks = re.findall(r"```python\n(.*?)```", README + PYTHON, re.DOTALL)
-    assert len(blocks) == 8
+    assert len(blocks) == 9
     for block in blocks:
         compile(block, "README.md", "exec")
 

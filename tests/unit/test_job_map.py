@@ -612,7 +612,7 @@ def test_the_page_names_what_it_shows(tmp_path, monkeypatch):
 
 
 def test_a_long_legend_stays_on_the_page():
-    """By what is drawn: the right edge of the legend in pixels. Versions of the library differ in the width of letters."""
+    """By what is drawn: the right edge in pixels. Versions of the library differ in the width of letters."""
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
