@@ -164,7 +164,7 @@ def test_what_is_continued_lies_within_what_is_stated():
 
 
 def test_law_is_the_table(table):
-    """Load of each approach that the isothermal table reads, to cubics over load; slopes by quotients; at rest Hertz."""
+    """Load of each approach of the isothermal table, to cubics over load; slopes by quotients; at rest Hertz."""
     law = ehdmaps.law("6208", "FVA3", kind="inner", inlet_heat=False)
     contact = law.contacts[0]
     loads = np.geomspace(5.0, 2000.0, 7)
