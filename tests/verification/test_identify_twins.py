@@ -30,7 +30,7 @@ def twin():
 def fit(twin):
     """The fit of its responses at two speeds, from random starts."""
     question = twin.question(twin.responses(SPEEDS, LINES, np.random.default_rng(5)))
-    return search(question, starts=12, kept=3, seed=2)
+    return search(question, starts=6, kept=3, seed=2)
 
 
 def test_hidden_values_are_found_from_far_starts(twin, fit) -> None:
