@@ -148,14 +148,15 @@ class WorkerPool:
         try:
             if error is None:
                 self._executor.shutdown()
-                return
-            self._executor.shutdown(wait=False, cancel_futures=True)
             if isinstance(error, BrokenProcessPool):
+                self._executor.shutdown(wait=False, cancel_futures=True)
                 raise self._died() from error
         finally:
             if error is not None:
                 for child in self._children:
                     child.terminate()
+                # It waits for its thread, which closes a pipe that the end of the program writes to.
+                self._executor.shutdown(cancel_futures=True)
             self._close()
 
     def submit(self, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> Future[T]:
