@@ -36,12 +36,11 @@ MOST_SHOWN = 8
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Find the unknowns, or plan what to measure."""
     model, measured, notes, angles = _asked(arguments)
-    free = [text for group in arguments.free for text in ([group] if isinstance(group, str) else group)]
     head = heading(model, model.scene.speed)
     if arguments.plan:
-        unknowns, steps = identify_plan(model, free, _speeds(arguments), angles, _progress)
+        unknowns, steps = identify_plan(model, arguments.free, _speeds(arguments), angles, _progress)
         return "\n".join([*head, *plan_lines(unknowns, steps)]), 0
-    found = dataclasses.replace(identify(model, measured, free, angles, progress=_progress), notes=tuple(notes))
+    found = identify(model, measured, arguments.free, angles, progress=_progress)
     poor = found.fit.chi2 > MOST_CHI2
     lines = [*head, *(f"  {note}" for note in notes), *found_lines(found), *apart_lines(found, would_tell(found))]
     if poor:
@@ -49,7 +48,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             f"warning: chi2 {found.fit.chi2:.3g}: the machine of the scene is not the one that was measured, or hits "
             "and sensors are elsewhere; no value above is a result"
         )
-    if found.fit.stopped:
+    if found.stopped:
         lines.append("warning: stopped; the best so far")
     lines += write(arguments, found.dataset, found.plot() if arguments.plot else None)
     status = 1 if poor or found.at_bounds else 0
@@ -59,7 +58,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         except (AnalysisError, InputError) as error:  # what was found is not lost by it
             lines += [f"warning: {problem}" for problem in str(error).splitlines()]
             status = 1
-    return "\n".join(lines), 130 if found.fit.stopped else status
+    return "\n".join(lines), 130 if found.stopped else status
 
 
 def _progress(part: str) -> Callable[[int, int], None]:

@@ -92,6 +92,8 @@ class Certainty:
         Squares of what is left over, over those of noise.
     lost : tuple of str
         Assumptions that could not be tried, each with the reason.
+    stopped : bool
+        Whether Ctrl-C left assumptions untried.
     """
 
     deviation: FloatArray
@@ -99,6 +101,7 @@ class Certainty:
     trials: tuple[Trial, ...]
     chi2: float
     lost: tuple[str, ...] = ()
+    stopped: bool = False
 
     @property
     def noise(self) -> FloatArray:
@@ -169,24 +172,38 @@ def certainty(fit: Fit, progress: Callable[[int, int], None] = lambda done, tota
     question = fit.question
     deviation, correlation = covariance(fit.jacobian, question.width)
     solved: FloatArray = np.asarray(np.linalg.pinv(fit.jacobian), dtype=np.float64)
-    trials, lost = [], []
+    trials: list[Trial] = []
+    lost: list[str] = []
     asked = list(assumptions(question.scene, [one.group for one in question.free], fit))
     # Looks at another viscosity are looks at another temperature, which is found.
     warm = "viscosity" if any(one.name == "temperature" for one in question.free) else None
     progress(0, len(asked))
     for k, unknown in enumerate(asked):
-        warmth = warm == unknown.group
-        ways = [_warmth(fit, scene) if warmth else _shift(fit, solved, scene) for scene in unknown.looks]
-        shifts = [one for one in ways if one is not None]
-        if shifts:
-            parts = [float(part == 1.0) if unknown.is_member else part for _, part in shifts]
-            moved = np.array([part * shift for (shift, _), part in zip(shifts, parts, strict=True)])
-            both = np.concatenate([moved, -moved[:1]]) if unknown.reflected else moved
-            trials.append(Trial(unknown.name, both * question.width, max(parts)))
-        if len(shifts) < len(ways):
-            lost.append(f"{unknown.name} {unknown.held}: no equilibrium, or other laws than the machine can have")
+        try:
+            trial, reason = _tried(fit, solved, unknown, warm == unknown.group)
+        except KeyboardInterrupt:
+            words = f"stopped before {len(asked) - k} of {len(asked)} assumptions were tried"
+            return Certainty(deviation, correlation, tuple(trials), fit.chi2, (*lost, words), stopped=True)
+        trials += [trial] if trial is not None else []
+        lost += [reason] if reason else []
         progress(k + 1, len(asked))
     return Certainty(deviation, correlation, tuple(trials), fit.chi2, tuple(lost))
+
+
+def _tried(fit: Fit, solved: FloatArray, unknown: Unknown, warmth: bool) -> tuple[Trial | None, str]:
+    """Shifts by an assumption, None where the machine cannot be so, and what could not be tried of it, in words."""
+    ways = [_warmth(fit, scene) if warmth else _shift(fit, solved, scene) for scene in unknown.looks]
+    shifts = [one for one in ways if one is not None]
+    reason = ""
+    if len(shifts) < len(ways):
+        reason = f"{unknown.name} {unknown.held}: no equilibrium, or other laws than the machine can have"
+    if not shifts:
+        return None, reason
+    # What is one thing or another is there, or it is not; of a spread a part remains.
+    parts = [float(part == 1.0) if unknown.is_member else part for _, part in shifts]
+    moved = np.array([part * shift for (shift, _), part in zip(shifts, parts, strict=True)])
+    both = np.concatenate([moved, -moved[:1]]) if unknown.reflected else moved
+    return Trial(unknown.name, both * fit.question.width, max(parts)), reason
 
 
 def _shift(fit: Fit, solved: FloatArray, scene: Scene) -> tuple[FloatArray, float] | None:

@@ -41,14 +41,16 @@ class Identified:
         How well it is known.
     other : OtherLaw or None
         The same data by a constant damper; None of machines without films.
-    notes : tuple of str
-        What was read, and how.
     """
 
     fit: Fit
     certainty: Certainty
     other: OtherLaw | None = None
-    notes: tuple[str, ...] = ()
+
+    @property
+    def stopped(self) -> bool:
+        """True where Ctrl-C ended the search or the trials."""
+        return self.fit.stopped or self.certainty.stopped
 
     @property
     def free(self) -> tuple[Free, ...]:

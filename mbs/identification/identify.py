@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -88,7 +89,10 @@ def identify(
     if wrong := wrong_channels(fit):
         raise InputError([f"{one.channel}: {one.words}; state it as it was measured" for one in wrong])
     sure = certainty(fit, progress("assumption"))
-    other = damper(fit, progress("look")) if looked.model.has_films and not fit.stopped else None
+    other = None
+    if looked.model.has_films and not (fit.stopped or sure.stopped):
+        with contextlib.suppress(KeyboardInterrupt):  # what was found is kept
+            other = damper(fit, progress("look"))
     return Identified(fit, sure, other)
 
 

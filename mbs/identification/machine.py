@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from ehdmaps.arrays import ComplexArray, FloatArray
-from ehdmaps.errors import AnalysisError, InputError
 from mbs.analyses.operating import operating
 from mbs.identification.free import Free
 from mbs.identification.measured import Measured, MeasuredModes, MeasuredResponses
@@ -29,9 +28,6 @@ from mbs.scene.scene import Scene
 
 DRY = "hertz"
 """Law of a machine that stands."""
-
-FARTHEST = 0.3
-"""Logarithm of frequencies up to which a measured mode may be one of the machine."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,17 +47,6 @@ class Machine:
     model: Model
     cage_angles: int
     law: str = ""
-    _count: list[int] = field(default_factory=lambda: [0, 0], repr=False)
-
-    @property
-    def looks(self) -> int:
-        """Number of looks at it."""
-        return self._count[0]
-
-    @property
-    def refused(self) -> int:
-        """Number of these looks that found no equilibrium."""
-        return self._count[1]
 
     def balance(self, scene: Scene, speed: float) -> Equilibrium:
         """Equilibrium about which the machine moves at a speed.
@@ -78,15 +63,9 @@ class Machine:
         InputError, AnalysisError
             If it cannot be, or finds no equilibrium.
         """
-        self._count[0] += 1
-        try:
-            law = self.law or ("" if speed else DRY)
-            model = assemble(scene, law) if law else self.model.again(scene)
-            operation = Operation(speed)
-            return mean_equilibrium(operating(model, speed).system, operation, self.cage_angles if speed else 1)
-        except (InputError, AnalysisError):
-            self._count[1] += 1
-            raise
+        law = self.law or ("" if speed else DRY)
+        model = assemble(scene, law) if law else self.model.again(scene)
+        return mean_equilibrium(operating(model, speed).system, Operation(speed), self.cage_angles if speed else 1)
 
     def responses(self, scene: Scene, measured: MeasuredResponses) -> ComplexArray:
         """Responses as they were measured, shape (lines, rows).
@@ -114,8 +93,8 @@ class Machine:
     def modes(self, scene: Scene, measured: MeasuredModes) -> tuple[FloatArray, FloatArray]:
         """Frequencies [Hz] and damping ratios of the modes that were measured; NaN where there is none like it.
 
-        Modes are paired so that the sum of what tells them apart is least: the logarithm of their frequencies over
-        `FARTHEST`, and what their shapes lack of each other where shapes were measured.
+        Modes are paired so that the sum of what tells them apart is least: the logarithm of their frequencies, and what
+        their shapes lack of each other where shapes were measured, 1 less the modal assurance.
 
         Parameters
         ----------
@@ -128,11 +107,11 @@ class Machine:
         found = modes(balance, errors=False)
         swings = np.flatnonzero((found.frequency > 1.0) & (found.damping_ratio < 0.9))
         frequency, ratio = found.frequency[swings], found.damping_ratio[swings]
-        apart = np.abs(np.log(frequency[None, :] / measured.frequency[:, None])) / FARTHEST
+        apart = np.abs(np.log(frequency[None, :] / measured.frequency[:, None]))
         if measured.shapes is not None:
             seen = (sensor_matrix(balance, measured.sensors) @ found.shapes[:, swings]).T
             apart = apart + 1.0 - _alike(measured.shapes, seen)
-        rows, columns = linear_sum_assignment(np.minimum(apart, 1e3))
+        rows, columns = linear_sum_assignment(apart)
         result = np.full((2, measured.frequency.size), np.nan)
         result[:, rows] = frequency[columns], ratio[columns]
         return result[0], result[1]

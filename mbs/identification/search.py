@@ -41,8 +41,8 @@ STEP = 1e-4
 _NONE = 3.0
 """Residual of a logarithm where the machine finds no equilibrium, or has no such mode."""
 
-_FAR = 60
-"""Looks that each stage of a refinement may take for each unknown, beside those of its differences."""
+_MOST_STEPS = 60
+"""Steps of each stage of a refinement."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,8 +107,34 @@ class Question:
         scene : Scene, optional
             Another machine, as it is held fixed.
         """
+        return self.residuals_of(self.looks(parts, scene), parts, widened)
+
+    def looks(self, parts: FloatArray, scene: Scene | None = None) -> list[ComplexArray | None]:
+        """Logarithms of what the machine has in place of each measurement; None where it has no equilibrium.
+
+        Parameters
+        ----------
+        parts : array, shape (unknowns,)
+            Unknowns as parts of their ranges.
+        scene : Scene, optional
+            Another machine, as it is held fixed.
+        """
         values = self.values(parts)
-        found = [residual_of(self.look(values, one, scene), one, widened) for one in self.measured]
+        return [self.look(values, one, scene) for one in self.measured]
+
+    def residuals_of(self, looks: Sequence[ComplexArray | None], parts: FloatArray, widened: float = 0.0) -> FloatArray:
+        """Residuals of looks at the machine.
+
+        Parameters
+        ----------
+        looks : sequence of array or None
+            Logarithms that `looks` finds.
+        parts : array, shape (unknowns,)
+            Unknowns as parts of their ranges.
+        widened : float
+            Relative deviation that every line gets beside its own.
+        """
+        found = [residual_of(look, one, widened) for look, one in zip(looks, self.measured, strict=True)]
         return np.concatenate([*found, self.before(parts)])
 
     def look(self, values: Sequence[float], measured: Measured, scene: Scene | None = None) -> ComplexArray | None:
@@ -256,11 +282,13 @@ def search(
     total = len(places) + 2 * kept
     progress(0, total)
     coarse, fine = question.thinned(COARSE), question.thinned(FINE)
-    scored = []
+    scored, stands = [], False
     for k, place in enumerate(places):
-        scored.append((_score(coarse.residuals(place, WIDENED)), k))
+        looks = coarse.looks(place)
+        stands = stands or any(look is not None for look in looks)
+        scored.append((_score(coarse.residuals_of(looks, place, WIDENED)), k))
         progress(k + 1, total)
-    if question.machine.refused >= question.machine.looks:
+    if not stands:
         raise AnalysisError("no equilibrium at any start: look at `mbs statics` of the scene, and at the ranges")
     found: list[tuple[float, FloatArray]] = []
     stopped = False
@@ -304,7 +332,7 @@ def _refined(question: Question, start: FloatArray, widened: float, scale: float
         diff_step=STEP,
         xtol=1e-6,
         ftol=1e-7,
-        max_nfev=_FAR,
+        max_nfev=_MOST_STEPS,
     )
     return np.asarray(found.x, dtype=np.float64)
 

@@ -53,6 +53,7 @@ COMMANDS = (
     Command("sweep", ("--workers", "1"), output="-o result.nc", turned=1),
     Command("critical", output="-o result.nc", turned=0),
     Command("hammer", ("--hits", "1", "--duration", "20 ms", "--workers", "1"), output="-o result.uff", turned=1),
+    Command("identify", ("--plan", "--free", "pull.force"), turned=0),
     Command("report", output="-o result.html", slow=True, only=PAGES),
     Command("runup", ("--workers", "1"), output="-o result.nc", slow=True, only=FILMS),
     Command("campbell", ("--workers", "1"), output="-o result.nc", slow=True, only=DRY),

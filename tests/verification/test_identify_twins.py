@@ -9,12 +9,16 @@ import pytest
 
 import mbs
 from ehdmaps.errors import InputError
+from mbs.identification import certainty as certainty_module
 from mbs.identification.certainty import APART, certainty, covariance
 from mbs.identification.explained import DAMPER, FILMS, damper
+from mbs.identification.measured import MeasuredModes
 from mbs.identification.planning import information_of, plan
 from mbs.identification.search import jacobian_at, search
+from mbs.linearised.linear import sensor_matrix
+from mbs.linearised.modes import modes
 from mbs.scene.changes import with_loads
-from tests.cases.identify_twins import BALLS, RPM, balls
+from tests.cases.identify_twins import BALLS, RPM, balls, rollers
 
 LINES = np.arange(40.0, 1800.0, 16.0)
 SPEEDS = 3000.0, 6000.0
@@ -93,3 +97,50 @@ def test_in_python(twin) -> None:
     assert found.dataset["band_low"] < found.dataset["found"] < found.dataset["band_high"]
     with pytest.raises(InputError, match="nothing measured"):
         mbs.identify(mbs.read_scene("electric_drive"), [], ["clearance"])
+
+
+def test_modes_are_paired_by_their_shapes_where_these_are_measured() -> None:
+    """Two bending modes, 30 % apart, whose shapes differ: by frequencies alone they keep their order, by shapes not."""
+    twin = rollers(angles=1)
+    scene, speed = twin.scene, 4000.0 * RPM
+    balance = twin.machine.balance(scene, speed)
+    found = modes(balance, errors=False)
+    pair = np.flatnonzero((found.frequency > 200.0) & (found.damping_ratio < 0.5))[2:4]
+    own = found.frequency[pair]
+    seen = (sensor_matrix(balance, scene.sensors) @ found.shapes[:, pair]).T
+    sizes = np.linalg.norm(seen, axis=1)
+    assert own[1] < 1.3 * own[0] and abs(np.vdot(seen[0], seen[1])) < 0.1 * sizes[0] * sizes[1]
+    none = np.full(2, np.nan)
+    bare = MeasuredModes("twin", speed, own, 0.01 * own, none, none)
+    exchanged = dataclasses.replace(bare, shapes=seen[::-1], sensors=scene.sensors)
+    assert twin.machine.modes(scene, bare)[0] == pytest.approx(own, rel=1e-6)
+    assert twin.machine.modes(scene, exchanged)[0] == pytest.approx(own[::-1], rel=1e-6)
+
+
+@pytest.mark.parametrize(("after", "tried"), [(0, 0), (2, 2)])
+def test_what_is_found_is_kept_where_the_trials_are_stopped(twin, fit, monkeypatch, after, tried) -> None:
+    """Ctrl-C in the trials of assumptions: the values, their noise, and the trials that were made."""
+    true, calls = certainty_module._tried, []
+
+    def stopping(*arguments):
+        calls.append(1)
+        if len(calls) > after:
+            raise KeyboardInterrupt
+        return true(*arguments)
+
+    monkeypatch.setattr(certainty_module, "_tried", stopping)
+    sure = certainty(fit)
+    assert sure.stopped and "stopped before" in sure.lost[-1]
+    assert len(sure.trials) <= tried and np.all(np.isfinite(sure.deviation))
+
+
+def test_the_best_so_far_is_kept_where_the_search_is_stopped(twin) -> None:
+    """Ctrl-C after the first of the refined starts."""
+    question = twin.question(twin.responses(SPEEDS[1:], LINES[::2], np.random.default_rng(5)))
+
+    def stop(done: int, total: int) -> None:
+        if done == total - 1:  # within the second refinement
+            raise KeyboardInterrupt
+
+    found = search(question, starts=1, kept=2, progress=stop)
+    assert found.stopped and len(found.costs) == 1

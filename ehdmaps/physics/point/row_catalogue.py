@@ -160,7 +160,7 @@ def preloaded(geometry: BallGeometry, preload: float) -> BallGeometry:
     Raises
     ------
     InputError
-        For a preload that is none, or of rows that carry one way alone.
+        For a preload that is negative or not finite, and one of rows that all carry the same way.
     """
     if not (math.isfinite(preload) and preload >= 0.0) or (preload and not geometry.axial_play):
         raise InputError(
