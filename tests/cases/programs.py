@@ -8,6 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from ehdmaps.errors import InputError
+from ehdmaps.openfoam.installation import installation
+
 PACKAGES = {
     "bash": "bash",
     "git": "git",
@@ -47,6 +50,14 @@ def needed(*names: str) -> str:
         if found := shutil.which(name):
             return found
     pytest.skip(f"{' or '.join(names)} is not on the PATH: apt-get install {PACKAGES[names[0]]}")
+
+
+def needs_film_solver() -> None:
+    """End the test where `ehlFoam` is not built: the short tier runs without OpenFOAM, too."""
+    try:
+        installation()
+    except InputError as error:
+        pytest.skip(str(error))
 
 
 def quick_compiler(folder: Path) -> str:

@@ -26,6 +26,7 @@ from mbs.analyses.bearing_point import bearing_point
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.films import MapFilms
+from tests.cases.programs import needs_film_solver
 
 TEXT = """schema = 1
 [bearing]
@@ -150,6 +151,7 @@ def test_where_there_is_nothing_to_estimate():
 def test_beside_cfd_films_are_those_of_reynolds_with_the_same_physics():
     from ehdmaps.openfoam.solver import OpenFoamSolver
 
+    needs_film_solver()
     solver = OpenFoamSolver(physics="thermal", shear="limiting", rows=12)
     fast = solvers.reference(CFD, solver)
     assert isinstance(fast, ReynoldsSolver)
