@@ -157,7 +157,6 @@ def recorded_run(
     sensors: Sequence[Sensor],
     told: Callable[[int], None] | None = None,
     *,
-    nudge: float = 0.0,
     marks: bool = False,
 ) -> Recording:
     """Run up from the equilibrium at the first speed, and record sensors.
@@ -172,8 +171,6 @@ def recorded_run(
         What is recorded.
     told : callable, optional
         Told the number of samples done.
-    nudge : float
-        Distance of all coordinates from their equilibrium at the beginning [m or rad], to see what becomes of it.
     marks : bool
         Whether states are kept from which the run can go on.
 
@@ -189,7 +186,7 @@ def recorded_run(
         course.duration,
         course.settings,
         sensors=sensors,
-        displacement=start.displacement + nudge,
+        displacement=start.displacement,
         progress=told,
         options=Options(marks=marks),
     )

@@ -20,7 +20,7 @@ from ehdmaps.units import LOAD, RPM, SPEED, TEMPERATURE, Display
 from mbs.commands.cases import read_dry, scene_output_problems
 from mbs.output.model_text import heading
 from mbs.planning import ranges
-from mbs.planning.plan import PlanResult, PlanSettings, plan
+from mbs.planning.plan import PlanResult, PlanSettings, held_films, plan
 from mbs.planning.ranges import Needed
 from mbs.scene.assembly import assemble
 from mbs.scene.fields import MICROMETRE
@@ -157,25 +157,23 @@ def _others(found: PlanResult, settings: PlanSettings) -> list[str]:
     """Lines on bearings of which no map is made: what they see, and what the film table has there."""
     if not found.seen:
         return []
-    from mbs.planning.seen import held_films  # not for maps alone
-
     model = assemble(found.scene, TABLE_LAW, clearance=settings.clearance)
     lines = []
     for entry in found.seen:
         body, kind = ("ball", "points") if entry.of_points else ("slice", "lines")
-        held = held_films(entry, model, found.speeds)
-        table = "none" if math.isnan(held.loads[0]) else _span(held.loads, entry.display)
+        loads, missing = held_films(entry, model, found.speeds)
+        table = "none" if math.isnan(loads[0]) else _span(loads, entry.display)
         lines += [
             f"{entry.geometry.title}: {', '.join(entry.bearings)}",
             f"  largest load of a {body} at rest {entry.display.text(entry.static_load)}",
             f"  {'':18s} {'seen':28s} in the film table of {kind}, which answers: no map",
             f"  {'load':18s} {_span(entry.load, entry.display):28s} {table}",
-            f"  {'entrainment speed':18s} {_span(entry.entrainment_speed, SPEED):28s} {held.missing or 'held'}",
+            f"  {'entrainment speed':18s} {_span(entry.entrainment_speed, SPEED):28s} {missing or 'held'}",
             f"  {'temperature':18s} {TEMPERATURE.text(entry.temperature)}",
         ]
-        if held.missing:
+        if missing:
             lines.append("  films              --law table is refused there; dry contacts: --law 'hertz:1.25e-5 s'")
-        elif held.lacks(entry):
+        elif not entry.static_load <= loads[1]:
             lines.append("  films              go on straight in logarithms above these loads, and runs count it")
     return lines
 

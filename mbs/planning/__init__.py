@@ -4,7 +4,6 @@
 question   speeds that an analysis visits, of all that a scene states
 ranges     operating points of a scene and the loads and speeds seen there
 plan       which ranges a scene needs of a contact map, and the jobs that cover them
-seen       what the film table has of balls, tapered and ribbed rollers, of which no map is made
 criteria   by how much a physics changes a contact, in closed form
 physics    verdicts on the physics of the films of a scene
 tolerance  step and slices that keep the level of a run-up within a tolerance, and runs with them

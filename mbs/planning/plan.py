@@ -7,7 +7,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ehdmaps.errors import InputError, Problems
+import numpy as np
+
+from ehdmaps.errors import AnalysisError, InputError, Problems
 from ehdmaps.jobs.job import Job, check_oil
 from ehdmaps.jobs.job_text import bearing_keys, lubricant_keys, table_lines
 from ehdmaps.jobs.problem import LOAD_AXIS, SPEED_AXIS, AxisRule
@@ -25,6 +27,8 @@ LOADS_PER_DECADE, SPEEDS_PER_DECADE = 6, 5
 
 FEWEST = 4
 LAW_CHECK = 500
+
+_SPEEDS = 5
 
 
 def planned_job(scene: Scene, needed: Needed, name: str = "plan") -> Job:
@@ -174,6 +178,40 @@ class PlanResult:
                 jobs.append(planned_job(self.scene, entry, name))
         problems.check()
         return tuple(jobs)
+
+
+def held_films(seen: Needed, model: Model, speeds: tuple[float, float]) -> tuple[tuple[float, float], str]:
+    """Loads that the film table has over the speeds of a scene, of bearings of which no map is made.
+
+    Parameters
+    ----------
+    seen : Needed
+        The bearings.
+    model : Model
+        The scene with films of the table.
+    speeds : (float, float)
+        Lowest and highest speed of the system [rad/s].
+
+    Returns
+    -------
+    (float, float)
+        Loads at all speeds that have films, in the unit of `Needed.load`; NaN where there are none.
+    str
+        Speed at which there are no films, and why; empty where there are films at all speeds.
+    """
+    element = next(entry for entry in model.located if entry.name == seen.bearings[0])
+    length = 1.0 if seen.of_points else seen.geometry.roller_length
+    loads, missing = [], ""
+    for speed in np.unique(np.geomspace(*speeds, _SPEEDS)).tolist():
+        try:
+            loads.append(np.array(element.law_at(speed).loads) / length)
+        except AnalysisError as error:
+            rate = SPEED.text(element.entrainment_rate * speed)
+            missing = missing or f"none at {RPM.text(speed)}, {rate}: {str(error.__cause__).partition('; ')[0]}"
+    if not loads:
+        return (math.nan, math.nan), missing
+    ends = np.array(loads)
+    return (float(ends[:, 0].max()), float(ends[:, 1].min())), missing
 
 
 def plan(scene: Scene, settings: PlanSettings | None = None) -> PlanResult:

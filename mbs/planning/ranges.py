@@ -20,9 +20,7 @@ import numpy as np
 
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.bearing import BearingGeometry
-from ehdmaps.physics.films import moes_central
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.moes import film_from_moes, moes_groups
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.units import LOAD, Display
 from mbs.bearings.bearing_element import BearingElement
@@ -31,6 +29,7 @@ from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import Constant, Course, Harmonic, LoadProfile
 from mbs.model.system import System
+from mbs.planning.criteria import closed_contact
 from mbs.scene.assembly import AnyBearing
 from mbs.scene.fields import FORCE
 
@@ -97,19 +96,13 @@ class Needed:
         return FORCE if self.of_points else LOAD
 
 
-def same_contacts(geometry: BearingGeometry) -> tuple[float, float, float, float]:
+def same_contacts(geometry: BearingGeometry) -> tuple[float, ...]:
     """Dimensions on which the contacts of a bearing depend: raceways and rollers [m], rounded to a nanometre.
 
     Bearings that agree in it share a map, whatever their clearance and number of rollers.
     """
-    lengths = (
-        geometry.inner_raceway_diameter,
-        geometry.outer_raceway_diameter,
-        geometry.roller_diameter,
-        geometry.roller_length,
-    )
-    first, second, third, fourth = (round(length, 9) for length in lengths)
-    return first, second, third, fourth
+    names = ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length")
+    return tuple(round(getattr(geometry, name), 9) for name in names)
 
 
 def speed_range(steady: Iterable[float], ramp: Sequence[float] = ()) -> tuple[float, float]:
@@ -223,14 +216,10 @@ def film_room(
     ----------
     Films as of `ehdmaps.physics.films.moes_central`.
     """
-    state = lubricant.at(temperature)
-    viscosity, alpha = state.viscosity, state.pressure_viscosity.pressure_viscosity
-    total = 0.0
-    for contact in geometry.contacts(STEEL, "iso16281"):
-        radius, modulus = contact.radius, contact.reduced_modulus
-        load_number, oil_number = moes_groups(load, entrainment_speed, viscosity, alpha, radius, modulus)
-        total += film_from_moes(moes_central(load_number, oil_number), entrainment_speed, viscosity, radius, modulus)
-    return 2.0 * total
+    contacts, at = geometry.contacts(STEEL, "iso16281"), np.array([load])
+    return 2.0 * sum(
+        float(closed_contact(one, lubricant, at, entrainment_speed, temperature).film[0]) for one in contacts
+    )
 
 
 def needed_ranges(
@@ -267,29 +256,25 @@ def needed_ranges(
     """
     if not 1.0 <= margin <= MOST_MARGIN:
         raise InputError(f"plan, margin: got {margin!r}; allowed: 1 to {MOST_MARGIN:g}")
-    groups: dict[object, list[int]] = {}
-    bearing: Any
-    for index, bearing in enumerate(bearings):
-        mapped = isinstance(bearing, BearingElement)
-        key: object = same_contacts(bearing.bearing.geometry) if mapped else bearing.force.same_films
-        groups.setdefault(key, []).append(index)
+    groups: dict[object, list[tuple[Any, float, float]]] = {}
+    one: Any
+    for one, load, room in zip(bearings, static_loads, rooms, strict=True):
+        mapped = isinstance(one, BearingElement)
+        key = same_contacts(one.bearing.geometry) if mapped else one.force.same_films
+        groups.setdefault(key, []).append((one, load, room))
     found = []
     for members in groups.values():
-        names = tuple(bearings[index].name for index in members)
-        load = max(static_loads[index] for index in members)
-        rates = [rate for index in members if (rate := bearings[index].entrainment_rate) > 0.0]
+        every, loads, taken = zip(*members, strict=True)
+        one, load, names = every[0], max(loads), tuple(bearing.name for bearing in every)
+        rates = [bearing.entrainment_rate for bearing in every if bearing.entrainment_rate > 0.0]
         if not (load > 0.0 and rates):
             raise AnalysisError(
                 f"plan: the rollers of {', '.join(names)} {'carry no load' if rates else 'do not roll'} in any "
                 "equilibrium of the scene, so that no range can be told; give the scene loads, spins, or a smaller "
                 "clearance"
             )
-        one: Any = bearings[members[0]]
-        mapped, of_points, highest = (
-            isinstance(one, BearingElement),
-            getattr(one.force, "of_points", False),
-            margin * load,
-        )
+        mapped, of_points = isinstance(one, BearingElement), getattr(one.force, "of_points", False)
+        highest = margin * load
         found.append(
             Needed(
                 geometry=one.bearing.geometry if mapped else one.force.geometry,
@@ -298,7 +283,7 @@ def needed_ranges(
                 entrainment_speed=(min(rates) * speeds[0], max(rates) * speeds[1]),
                 temperature=one.temperature if mapped else temperature,
                 static_load=load,
-                film_room=max(rooms[index] for index in members),
+                film_room=max(taken),
                 of_points=of_points,
             )
         )
@@ -320,10 +305,7 @@ def outward(low: float, high: float) -> tuple[float, float]:
 def _extremes(profile: LoadProfile) -> tuple[float, ...]:
     """Times at which a load has its extremes [s]; none where they are not known."""
     if isinstance(profile, Course):
-        return (
-            profile.times[int(np.argmax(profile.values))],
-            profile.times[int(np.argmin(profile.values))],
-        )
+        return tuple(profile.times[int(at(profile.values))] for at in (np.argmax, np.argmin))
     if isinstance(profile, Harmonic) and profile.frequency > 0.0:
         first = (0.25 - profile.phase / (2.0 * math.pi)) % 1.0
         return first / profile.frequency, ((first + 0.5) % 1.0) / profile.frequency

@@ -1,22 +1,15 @@
-"""Step and slices of a run-up that keep its sum level within a tolerance: short trials propose, the run confirms.
+"""Step and slices of a run-up that keep its sum level within a tolerance: the run itself says whether they do.
 
-A trial is the whole ramp in a small part of its time, so that all resonances are passed. Trials with twice and four
-times the step of the scene are held side by side, and one with its slices beside one with about twice as many. Where
-that keeps the tolerance the settings stay; else one with the step itself is made, the step is halved, and slices are
-doubled. Then the run is made. It states the error of its step itself, from parts of it (`mbs.analyses.step_error`), and
-that is what confirms the choice, at no cost but that of any run. Where it does not, the run is made again with a
-shorter step.
-
-A method of second order whose levels change by d with twice the step is d/3 away from its limit, d/12 with a step that
-is half as long as both, and 4/3 d where d is the change by half of it. The step may take three quarters of the
-tolerance, slices the rest. Modes of flexible bodies stay as they are: those that a scene has cost less than a trial
-would.
+A run states the error of its step from parts of it that it makes again (`mbs.analyses.step_error`), at no cost but that
+of any run. Where that does not keep the tolerance the run is made again with half the step. Slices are chosen before,
+by trials: the whole ramp in a small part of its time, so that all resonances are passed, with twice the step. One with
+the slices is held beside one with about twice as many, until the levels differ by half of the tolerance at most; the
+step has what they leave of it. Of second order in the slices, 4/3 d is the error where d is the change by half of their
+width. Modes of flexible bodies stay as they are.
 
 A run that does not forget its start, such as one of rollers that lift off without damping, has no level at a speed that
-a shorter step would come closer to: what rounding changes grows to the size of the signal. So where the step of the
-scene does not keep the tolerance two longer trials are made that begin 1 pm apart. Where they come together all is
-well. Where they drift apart between any two times, they do so the longer the slower the ramp is, and rounding with
-them.
+a shorter step would come closer to: what rounding changes grows to the size of the signal. Half the step brings nothing
+there, and no shorter one is tried.
 
 `tolerated_run` is `--tolerance` of `campbell` and `runup`.
 """
@@ -28,13 +21,13 @@ import dataclasses
 import math
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from typing import TypeVar
+from dataclasses import dataclass
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.errors import AnalysisError, InputError, Problems
 from mbs.analyses.case import Case, Progress, silent
 from mbs.analyses.operating import held
 from mbs.analyses.ramp import recorded_run
@@ -71,34 +64,19 @@ TRIAL = 1.0 / 24.0
 LEAST_PERIODS = 2.5
 """Fewest periods of the highest frequency in a window of a trial: a short ramp is hurried less, or not at all."""
 
-DRIFT, LEAST_DRIFT = 1.0 / 8.0, 0.25
-"""Time of a trial that looks whether runs forget their start, as a part of that of the run-up, and at least [s]."""
-
-NUDGE = 1e-12
-"""How far two trials begin apart to see whether they forget it [m or rad]."""
-
-ROUNDING = 1e-13
-"""By which part of the signal two runs that have forgotten their start differ: rounding."""
-
-_STRETCHES = 24
-"""Into which a trial is cut to see how two of them drift apart."""
-
 _ORDER = 4.0
-_STEP_SHARE = 0.75
+_SLICES_SHARE = 0.5
+_MOST_TRIALS = 9
 
 _PROGRESS = 0.75
 """Part of the error that a run stated with twice the step, above which a shorter one has brought nothing: of second
 order it is a quarter. So it is where signals are as small as what restarts of films shake."""
 
-KEYS = ("step", "slices", "cutoff")
-"""The fields of `Numerics`, which are names of `mbs.scene.choices.CHOICES`."""
-
 Found = TypeVar("Found")
 
 
-@dataclass(frozen=True)
-class Numerics:
-    """Choices of a user about accuracy of a run-up.
+class Numerics(NamedTuple):
+    """Choices of a user about accuracy of a run-up, by their names in `mbs.scene.choices.CHOICES`.
 
     Attributes
     ----------
@@ -141,31 +119,22 @@ class Numerics:
         InputError
             If they do not fit the scene.
         """
-        had = Numerics.of(subject.scene)
-        for key in KEYS:
-            value = getattr(self, key)
-            subject = subject if value in (None, getattr(had, key)) else CHOICES[key].change(subject, value)
+        for key, had, value in zip(self._fields, Numerics.of(subject.scene), self, strict=True):
+            subject = subject if value in (None, had) else CHOICES[key].change(subject, value)
         return subject
 
-    def but(self, **values: float | int | None) -> Numerics:
-        """The same settings with some of them changed."""
-        return dataclasses.replace(self, **values)  # type: ignore[arg-type]
-
-    @property
-    def text(self) -> str:
-        """The settings in words, such as "step 10 us, 21 slices, modes up to 8000 Hz"."""
-        return ", ".join(words for key in KEYS if (words := self.words(key)))
-
-    def words(self, key: str) -> str:
-        """One of the settings in words; empty where it is left open.
+    def words(self, *keys: str) -> str:
+        """The settings, or some of them, in words, such as "step 10 us, 21 slices, modes up to 8000 Hz".
 
         Parameters
         ----------
-        key : str
-            One of `KEYS`.
+        *keys : str
+            Names of fields; all if left out.
         """
-        value = getattr(self, key)
-        return "" if value is None else CHOICES[key].words(value)
+        named = zip(self._fields, self, strict=True)
+        return ", ".join(
+            CHOICES[key].words(value) for key, value in named if value is not None and key in (keys or self._fields)
+        )
 
 
 @dataclass(frozen=True)
@@ -185,8 +154,6 @@ class Tolerated:
     confirmed : float
         Error of the level that the run states for its step, with that of the slices by trials [dB]; NaN where none was
         measured.
-    seconds : float
-        Processor time of all trials [s].
     """
 
     subject: Subject
@@ -194,7 +161,6 @@ class Tolerated:
     lines: tuple[str, ...]
     met: bool
     confirmed: float
-    seconds: float
 
 
 def read_tolerance(text: str) -> float:
@@ -215,15 +181,13 @@ def read_tolerance(text: str) -> float:
     >>> read_tolerance("0.5 dB")
     0.5
     """
-    number, _, unit = text.strip().partition(" ")
-    if not unit and number.endswith("dB"):
-        number, unit = number.removesuffix("dB"), "dB"
+    number = text.strip()
     try:
-        value = float(number)
+        value = float(number.removesuffix("dB")) if number.endswith("dB") else math.nan
     except ValueError:
         value = math.nan
-    if unit.strip() != "dB" or not LEAST <= value <= MOST:
-        raise InputError(f"got {text!r:.60}; allowed: {ALLOWED}")
+    if not LEAST <= value <= MOST:
+        raise InputError(f"--tolerance: got {text!r:.60}; allowed: {ALLOWED}")
     return value
 
 
@@ -265,46 +229,51 @@ def within(
     if not LEAST <= tolerance <= MOST:
         raise InputError(f"tolerance: got {tolerance!r} dB; allowed: {ALLOWED}")
     settings = settings or subject.scene.campbell
-    given = Numerics.of(subject.scene)
+    given, begin = Numerics.of(subject.scene), time.process_time()
     trials = _Trials(subject, looked_at(subject.scene, settings)[0], settings.highest, progress or silent)
-    numerics, change, could_not = _chosen(trials, tolerance, given)
-    trials.finish()
-    lines, before = trials.told, math.inf
+    numerics, change, lines = _with_slices(trials, tolerance, given)
+    seconds, before, could_not = time.process_time() - begin, math.inf, ""
+    if change > tolerance:
+        # A shorter step is no cure for that.
+        could_not = (
+            f"the sum level still changes too much by slices: {_decibel(change)} up to {numerics.words('slices')}"
+        )
     while True:
-        chosen = numerics.applied(subject)
+        chosen, step = numerics.applied(subject), numerics.words("step")
         found, check = run(chosen)
         error = math.nan if check is None else float(check.by_level.max(axis=0)[check.names.index(trials.sensor.name)])
         met = not could_not and error + change <= tolerance
-        if met or could_not or not error + change > tolerance or numerics.step < 1.5 * _finest(given):
+        if could_not or not error + change > tolerance:
             break
         if error > _PROGRESS * before:
             could_not = (
                 f"half of the step leaves {error:.2g} of {before:.2g} dB that the run states: that is no error of "
-                "the step alone, and no shorter one is tried"
+                "the step alone, and no shorter one is tried; where rollers lift off without damping the run does not "
+                "forget its start: compare medians over the ramp, or take a law with damping"
             )
+        elif numerics.step < 1.5 * given.step * 0.5**HALVINGS:
+            could_not = f"the sum level still changes too much by {step}, the shortest that is tried: {error:.2g} dB"
+        if could_not:
             break
-        before = error
-        lines.append(f"  {numerics.words('step')}: {error:.2g} dB by the run, so that it is made again with half of it")
-        numerics = numerics.but(step=0.5 * numerics.step)
-    same = ", as the scene has it" if numerics == given else ""
-    lines.append(f"  chosen: {numerics.text}{same}")
+        lines.append(f"  {step}: {error:.2g} dB by the run, so that it is made again with half of it")
+        before, numerics = error, numerics._replace(step=0.5 * numerics.step)
+    lines.append(f"  chosen: {numerics.words()}{', as the scene has it' if numerics == given else ''}")
     of_slices = "" if numerics.slices is None else f", slices {change:.2g} dB by trials"
     parts = f"step {error:.2g} dB by parts that it made again{of_slices}"
-    if met:
-        lines.append(f"  confirmed by the run, its {trials.of_what} within {error + change:.2g} dB: {parts}")
-    else:
-        reason = could_not or f"the run does not confirm it: {parts}"
-        lines.append(f"warning: could not: {reason}")
     lines.append(
-        f"  {trials.count} trials of {trials.steps} steps in all took {trials.seconds:.3g} s of processor time"
+        f"  confirmed by the run, its {trials.of_what} within {error + change:.2g} dB: {parts}"
+        if met
+        else f"warning: could not: {could_not or f'the run does not confirm it: {parts}'}"
     )
+    if trials.count:
+        lines.append(f"  {trials.count} trials of {trials.steps} steps in all took {seconds:.3g} s of processor time")
     head = f"tolerance {tolerance:g} dB of the {trials.of_what}"
-    return Tolerated(chosen, numerics, (head, *lines), met, error + change, trials.seconds), found
+    return Tolerated(chosen, numerics, (head, *lines), met, error + change), found
 
 
 @dataclass
 class _Trials:
-    """Trials that were made, none of them twice, and what they cost."""
+    """Trials of slices with twice the step, and what they cost."""
 
     subject: Subject
     sensor: Sensor
@@ -312,163 +281,53 @@ class _Trials:
     tell: Progress
     count: int = 0
     steps: int = 0
-    seconds: float = 0.0
-    told: list[str] = field(default_factory=list)
-    made: dict[tuple[Numerics, float, float], FloatArray | None] = field(default_factory=dict)
-
-    most: int = 12
-    """Trials at most, for the progress."""
-
-    @property
-    def scene(self) -> Scene:
-        """The scene that is tried."""
-        return self.subject.scene
 
     @property
     def of_what(self) -> str:
         """Level that is looked at, in words."""
-        assert self.scene.run_up is not None
-        window = MILLISECOND.text(self.scene.run_up.duration / WINDOWS)
+        assert self.subject.scene.run_up is not None  # `Numerics.of` saw to it
+        window = MILLISECOND.text(self.subject.scene.run_up.duration / WINDOWS)
         return (
             f"sum level of {self.sensor.name} up to {HERTZ.text(self.highest)}, at equal speed in "
             f"{100.0 * QUANTILE:g} % of windows of {window}"
         )
 
-    def factor(self, part: float, least: float) -> float:
-        """A part of the time of the run; more of a short one, so that a trial has at least a length [s]."""
-        assert self.scene.run_up is not None
-        return min(max(part, least / self.scene.run_up.duration), 1.0)
-
-    def run(self, numerics: Numerics, factor: float, nudge: float = 0.0) -> FloatArray | None:
-        """The signal of a trial with some settings in a part of the time; None where it finds no solution."""
-        key = (numerics, factor, nudge)
-        if key not in self.made:
-            begin = time.process_time()
-            self.made[key] = self._signal(numerics, factor, nudge)
-            self.count += 1
-            self.seconds += time.process_time() - begin
-            self.tell(min(self.count, self.most - 1), self.most)
-        return self.made[key]
-
-    def _signal(self, numerics: Numerics, factor: float, nudge: float) -> FloatArray | None:
+    def sizes(self, numerics: Numerics) -> FloatArray:
+        """Sizes of the signal in the windows of a trial; NaN where it finds no solution."""
         subject = numerics.applied(self.subject)
-        scene = hurried(subject.scene, factor)
+        assert subject.scene.run_up is not None
+        # More of a short run, so that windows have some periods.
+        least = WINDOWS * LEAST_PERIODS / self.highest / subject.scene.run_up.duration
+        scene = hurried(subject.scene, min(max(TRIAL, least), 1.0))
         assert scene.run_up is not None
+        self.count += 1
+        self.tell(min(self.count, _MOST_TRIALS), _MOST_TRIALS)
         try:
-            model = held(Subject(scene, subject.law, subject.clearance).model())
-            record = recorded_run(model, scene.run_up, (self.sensor,), nudge=nudge)
+            model = held(dataclasses.replace(subject, scene=scene).model())
+            record = recorded_run(model, scene.run_up, (self.sensor,))
         except AnalysisError:
-            return None  # such a step is too long for it, and says nothing about shorter ones
+            return np.full((WINDOWS, 1), np.nan)
         self.steps += record.steps
-        return record.signals[:, 0] if np.all(np.isfinite(record.signals)) else None
-
-    def difference(self, one: Numerics, other: Numerics) -> float:
-        """Difference of the levels of two trials that most windows keep [dB]; infinite where one has no solution."""
-        longest = max(one.step, other.step)
-        factor = self.factor(TRIAL, WINDOWS * LEAST_PERIODS / self.highest)
-        sizes = []
-        for numerics in (one, other):
-            signal = self.run(numerics, factor)
-            if signal is None:
-                return math.inf
-            seen = up_to(signal[:, None], numerics.step, min(self.highest, 0.25 / longest))
-            sizes.append(window_sizes(seen, WINDOWS))
-        return float(np.quantile(level_change(*sizes), QUANTILE))
-
-    def finish(self) -> None:
-        """Say that no trial will follow."""
-        self.tell(self.most, self.most)
+        return window_sizes(up_to(record.signals, numerics.step, min(self.highest, 0.25 / numerics.step)), WINDOWS)
 
 
-def _chosen(trials: _Trials, tolerance: float, given: Numerics) -> tuple[Numerics, float, str]:
-    """The settings that keep the tolerance in trials, the error left by their slices [dB], and why they could not."""
-    numerics, could_not = given, ""
-    twice = given.but(step=2.0 * given.step)
-    # Much cheaper than a trial with the step itself, and the run will tell whether it holds.
-    error = trials.difference(given.but(step=4.0 * given.step), twice) / (_ORDER - 1.0) / _ORDER
-    enough = error <= _STEP_SHARE * tolerance
-    while True:
-        if not enough:
-            error = trials.difference(numerics.but(step=2.0 * numerics.step), numerics) / (_ORDER - 1.0)
-        trials.told.append(f"  {numerics.words('step')}: {_decibel(error)}")
-        if error <= _STEP_SHARE * tolerance:
-            break
-        if numerics == given and (could_not := _forgetful(trials, tolerance, given)):
-            return given, math.nan, could_not
-        if numerics.step < 1.5 * _finest(given):
-            could_not = (
-                f"the sum level still changes too much by {numerics.words('step')}, the shortest that is tried: "
-                f"{_decibel(error)}, allowed {_STEP_SHARE * tolerance:.2g} dB"
-            )
-            return numerics, math.nan, could_not
-        numerics = numerics.but(step=0.5 * numerics.step)
-    change = 0.0
+def _with_slices(trials: _Trials, tolerance: float, given: Numerics) -> tuple[Numerics, float, list[str]]:
+    """Slices that keep their share of the tolerance, the error that they leave [dB], and what was tried."""
+    # What slices do hardly depends on the step, and twice the step costs half.
+    numerics, change, lines, sizes = given._replace(step=2.0 * given.step), 0.0, [], None
     while numerics.slices is not None and 2 * numerics.slices - 1 <= MOST_SLICES:
-        # What slices do hardly depends on the step, and twice the step costs half.
-        tried = numerics.but(step=2.0 * numerics.step)
-        more = tried.but(slices=2 * numerics.slices - 1)
-        change = trials.difference(tried, more) * _ORDER / (_ORDER - 1.0)
-        trials.told.append(f"  {numerics.words('slices')}: {_decibel(change)}")
-        if error + change <= tolerance:
+        sizes = trials.sizes(numerics) if sizes is None else sizes
+        more = numerics._replace(slices=2 * numerics.slices - 1)
+        finer = trials.sizes(more)
+        change = float(np.quantile(level_change(sizes, finer), QUANTILE)) * _ORDER / (_ORDER - 1.0)
+        change = math.inf if math.isnan(change) else change
+        lines.append(f"  {numerics.words('slices')}: {_decibel(change)}")
+        if change <= _SLICES_SHARE * tolerance:
             break
-        numerics = numerics.but(slices=more.slices)
-    else:
-        if error + change > tolerance:
-            # A shorter step is no cure for that.
-            could_not = (
-                f"the sum level still changes too much by slices: {_decibel(change)} up to {numerics.words('slices')}"
-            )
-    return numerics, change, could_not
-
-
-def _forgetful(trials: _Trials, tolerance: float, given: Numerics) -> str:
-    """Say that runs do not forget their start; empty where they do, and where that is not known."""
-    tried = given.but(step=2.0 * given.step)
-    factor = trials.factor(DRIFT, LEAST_DRIFT)
-    signal, nudged = trials.run(tried, factor), trials.run(tried, factor, NUDGE)
-    if signal is None or nudged is None:
-        return ""
-    apart = drift(signal, nudged)
-    # A level changes by 8.7 dB times a small relative change of the signal.
-    scatter = 20.0 / math.log(10.0) * ROUNDING * math.exp(min(apart / factor, 100.0))
-    if scatter <= tolerance:
-        return ""
-    assert trials.scene.run_up is not None
-    return (
-        f"two runs that begin 1 pm apart drift {math.exp(apart):.2g} times farther apart in a run of "
-        f"{factor * trials.scene.run_up.duration:.3g} s, so that in the whole one rounding grows to the "
-        "size of the signal and no step gives the level at a speed: the run does not forget its start, as rollers "
-        f"that lift off without damping do not; taken: {given.text}; compare medians over the ramp, or take a law "
-        "with damping"
-    )
-
-
-def _finest(given: Numerics) -> float:
-    """Shortest step that is tried [s]."""
-    return given.step * 0.5**HALVINGS
-
-
-def drift(signal: FloatArray, other: FloatArray) -> float:
-    """Natural logarithm of how much farther apart two signals come between any time and a later one; 0 if they do not.
-
-    Parameters
-    ----------
-    signal, other : array, shape (samples,)
-        Signals that begin next to each other, at least 24 samples.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> times = np.linspace(0.0, 1.0, 2401)[:-1]
-    >>> round(drift(np.zeros(2400), 1e-9 * np.exp(5.0 * times)), 2)  # from the first to the last of 24 stretches
-    4.79
-    >>> drift(np.zeros(2400), 1e-9 * np.exp(-5.0 * times))
-    0.0
-    """
-    length = signal.size // _STRETCHES
-    apart = (other - signal)[: length * _STRETCHES].reshape(_STRETCHES, length)
-    sizes = np.log(np.maximum(np.sqrt(np.mean(apart**2, axis=1)), np.finfo(np.float64).tiny))
-    return float(np.max(sizes - np.minimum.accumulate(sizes)))
+        numerics, sizes = more, finer
+    if trials.count:
+        trials.tell(_MOST_TRIALS, _MOST_TRIALS)
+    return numerics._replace(step=given.step), change, lines
 
 
 def _decibel(value: float) -> str:
@@ -476,24 +335,20 @@ def _decibel(value: float) -> str:
     return f"{value:.2g} dB" if math.isfinite(value) else "no solution"
 
 
-def asked_tolerance(arguments: argparse.Namespace, problems: list[str]) -> float | None:
+def asked_tolerance(arguments: argparse.Namespace, problems: Problems) -> float | None:
     """Read the level of --tolerance [dB]; None where there is none.
 
     Parameters
     ----------
     arguments : argparse.Namespace
         Arguments of the command.
-    problems : list of str
+    problems : Problems
         Appended to.
     """
-    text = getattr(arguments, "tolerance", None)
-    if text is None:
-        return None
-    try:
-        return read_tolerance(text)
-    except InputError as error:
-        problems.append(f"--tolerance: {error.problems[0]}")
-    return None
+    text, value = getattr(arguments, "tolerance", None), None
+    with problems:
+        value = None if text is None else read_tolerance(text)
+    return value
 
 
 def several_problems(tolerance: float | None, cases: Sequence[Case]) -> list[str]:
@@ -506,12 +361,11 @@ def several_problems(tolerance: float | None, cases: Sequence[Case]) -> list[str
     cases : sequence of Case
         The cases.
     """
-    if tolerance is None or len(cases) == 1:
-        return []
+    wrong = tolerance is not None and len(cases) > 1
     return [
         f"--tolerance: got {len(cases)} combinations of laws, films and the like; allowed: one, for which step "
         "and slices are chosen"
-    ]
+    ] * wrong
 
 
 def tolerated_run(
@@ -545,21 +399,19 @@ def tolerated_run(
     subject = cases[0].subject
     if tolerance is None or subject is None:
         return run(list(cases))[0], None
-    given = subject.scene.run_up
-    seldom = settings is None
-    if settings is None:
+    given, asked = subject.scene.run_up, settings
+    if asked is None:
         # What twice the step has samples for.
         highest = 0.25 / given.settings.step if given is not None else subject.scene.campbell.highest
-        settings = dataclasses.replace(subject.scene.campbell, highest=highest)
+        asked = dataclasses.replace(subject.scene.campbell, highest=highest)
 
     def made(changed: Subject) -> tuple[Found, StepCheck | None]:
         course = changed.scene.run_up
-        if seldom and given is not None and course is not None:
-            step = course.settings.step
-            sample = step * max(round(given.settings.sample / step), 1)
+        if settings is None and given is not None and course is not None:
+            sample = course.settings.step * max(round(given.settings.sample / course.settings.step), 1)
             course = dataclasses.replace(course, settings=dataclasses.replace(course.settings, sample=sample))
             changed = dataclasses.replace(changed, scene=dataclasses.replace(changed.scene, run_up=course))
         return run([dataclasses.replace(cases[0], model=changed.model(), subject=changed)])
 
-    tolerated, found = within(subject, tolerance, made, settings, progress)
+    tolerated, found = within(subject, tolerance, made, asked, progress)
     return found, tolerated

@@ -284,7 +284,7 @@ def _together(base: Subject, numerics: Numerics) -> Tried:
         values, best, _ = _values(base.scene, key, base.scene.campbell.highest)
         finest = _with(finest, key, best) if values else finest
     group = Group("all settings of the scene", finest, "the shortest step and the most slices")
-    return Entry(group, numerics.text, base, default=True)
+    return Entry(group, numerics.words(), base, default=True)
 
 
 class _Measured:
