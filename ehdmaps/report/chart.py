@@ -38,6 +38,24 @@ def number(value: float, digits: int = 3) -> str:
     return f"{float(f'{value:.{digits}g}'):.10g}"
 
 
+def known(value: float, digits: int = 3) -> str:
+    """Return a number as `number` does, or a dash where it is none or infinite.
+
+    Parameters
+    ----------
+    value : float
+        The number.
+    digits : int
+        How many digits count.
+
+    Examples
+    --------
+    >>> known(1.0), known(math.inf)
+    ('1', '-')
+    """
+    return number(value, digits) if math.isfinite(value) else "-"
+
+
 def shown(display: Display, value: float, digits: int = 3) -> str:
     """Return a number with its unit.
 
@@ -290,7 +308,7 @@ class Curve:
     read : bool
         Whether the cursor reads it off; it needs a label then.
     note : str
-        Text at its last place inside the chart.
+        Text at its last place inside the chart where no other one is.
     """
 
     label: str
@@ -435,7 +453,7 @@ def drawing(chart: Chart) -> Markup:
             clip_path=f"url(#{inside})",
         ),
         *(_marks(chart, points) for points in chart.points),
-        *(_note(chart, curve) for curve in chart.curves if curve.note),
+        *_notes(chart),
         tag("rect", class_="frame", **frame),
         tag("path", d=f"M{LEFT:g} {TOP:g}v{along:g}", class_="line"),
         None if known else tag("text", "no values", x=LEFT + across / 2.0, y=TOP + along / 2.0, text_anchor="middle"),
@@ -504,15 +522,42 @@ def _line(chart: Chart, curve: Curve) -> Markup | None:
     return tag("path", d=path, stroke=curve.colour, stroke_width=curve.width, stroke_dasharray=dash, class_="curve")
 
 
-def _note(chart: Chart, curve: Curve) -> Markup | None:
-    """The text of a curve at its last place inside the chart."""
-    inside = np.flatnonzero((curve.values >= chart.y.low) & (curve.values <= chart.y.high))
-    if not inside.size:
-        return None
-    last = inside[-1:]
-    x = float(chart.frame.across(chart.x, chart.places[last])[0])
-    y = float(chart.frame.along(chart.y, curve.values[last])[0])
-    return tag("text", curve.note, x=f"{x - 3.0:.1f}", y=f"{max(y - 4.0, TOP + 10.0):.1f}", text_anchor="end")
+_LETTER, _TALL = 6.2, 12.0
+"""Width of a letter of a note, and height of its line [px]."""
+
+
+def _notes(chart: Chart) -> list[Markup]:
+    """Texts of the curves, each at its last place inside the chart at which it does not lie upon another.
+
+    Places are tried from the end of a curve back to its begin, above the line; where all are taken the text is left to
+    the legend.
+    """
+    taken: list[tuple[float, float, float]] = []
+    parts = []
+    for curve in chart.curves:
+        if not curve.note:
+            continue
+        width = _LETTER * len(curve.note)
+        known = np.isfinite(curve.values)
+        if not known.any():
+            continue
+        # finely, for a curve of few places leaves its chart between two of them
+        places = np.linspace(chart.places[known][0], chart.places[known][-1], _TRIED)
+        values = np.interp(places, chart.places[known], curve.values[known])
+        inside = (values >= chart.y.low) & (values <= chart.y.high)
+        across, along = chart.frame.across(chart.x, places[inside]), chart.frame.along(chart.y, values[inside])
+        for x, y in zip(across[::-1] - 3.0, np.maximum(along[::-1] - 4.0, TOP + 10.0), strict=True):
+            if x - width < LEFT:
+                break
+            if all(x - width > right or x < left or abs(y - row) > _TALL for left, right, row in taken):
+                taken.append((x - width, x, y))
+                parts.append(tag("text", curve.note, x=f"{x:.1f}", y=f"{y:.1f}", text_anchor="end"))
+                break
+    return parts
+
+
+_TRIED = 101
+"""Places along a curve at which its text is tried."""
 
 
 def _marks(chart: Chart, points: Points) -> Markup | None:

@@ -10,13 +10,14 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
+from typing import NamedTuple
 
 from ehdmaps.errors import InputError
 from ehdmaps.outputs import MARK, Kind, has_mark, write_text
 
 _LINES = "\n\t"
 _NAMES = {"class_": "class", "for_": "for"}
-_VOID = frozenset({"meta", "br", "hr"})
+_VOID = frozenset({"meta", "br", "hr", "input"})
 
 
 class Markup(str):
@@ -173,10 +174,17 @@ class Section:
     content: Sequence[Child]
 
 
-def document(title: str, lead: str, sections: Sequence[Section]) -> str:
+class Moving(NamedTuple):
+    """Style and script of a part of a page that moves."""
+
+    style: str
+    script: str
+
+
+def document(title: str, lead: str, sections: Sequence[Section], moving: Sequence[Moving] = ()) -> str:
     """Return the text of the file.
 
-    A browser is told to load nothing, and to execute this script and no other.
+    A browser is told to load nothing, and to execute these scripts and no other.
 
     Parameters
     ----------
@@ -184,11 +192,13 @@ def document(title: str, lead: str, sections: Sequence[Section]) -> str:
         Heading, and the line below it; may hold foreign text.
     sections : sequence of Section
         The sections.
+    moving : sequence of Moving
+        Style and script of parts that move.
     """
-    style, script = _resource("document.css"), _resource("document.js")
-    policy = (
-        f"default-src 'none'; style-src {_hash(style)}; script-src {_hash(script)}; base-uri 'none'; form-action 'none'"
-    )
+    styles = [_resource("document.css"), *(part.style for part in moving)]
+    scripts = [_resource("document.js"), *(part.script for part in moving)]
+    allowed = (" ".join(map(_hash, texts)) for texts in (styles, scripts))
+    policy = "default-src 'none'; style-src {}; script-src {}; base-uri 'none'; form-action 'none'".format(*allowed)
     head = tag(
         "head",
         tag("meta", charset="utf-8"),
@@ -196,7 +206,7 @@ def document(title: str, lead: str, sections: Sequence[Section]) -> str:
         Markup(f'<meta http-equiv="Content-Security-Policy" content="{policy}">'),
         tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
         tag("title", title),
-        Markup(f"<style>{style}</style>"),
+        *(Markup(f"<style>{style}</style>") for style in styles),
     )
     contents = tag(
         "nav",
@@ -209,7 +219,7 @@ def document(title: str, lead: str, sections: Sequence[Section]) -> str:
         tag("header", tag("h1", title), tag("p", lead), tag("p", hint, class_="hint")),
         contents,
         tag("main", *(_section(entry) for entry in sections)),
-        Markup(f"<script>{script}</script>"),
+        *(Markup(f"<script>{script}</script>") for script in scripts),
     )
     return f'<!DOCTYPE html>\n<html lang="en">\n{head}\n{body}\n</html>\n'
 

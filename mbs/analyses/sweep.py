@@ -68,10 +68,13 @@ class SweepSettings:
     cage_angles : int
         Angles within one pitch of the rollers over which stiffness and damping of the bearings are averaged, for
         modes and responses too; 1 for the start angle of the cages alone.
+    besides : tuple of float
+        Speeds at which responses to loads that turn are found besides, as far as they lie within [rad/s].
     """
 
     speeds: SweepRange | None = None
     cage_angles: int = CAGE_ANGLES
+    besides: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -458,7 +461,9 @@ def critical_of(models: Sequence[Model], settings: SweepSettings | None = None) 
     settings = settings or SweepSettings()
     speeds = settings.speeds or models[0].scene.sweep
     found = [_swept(model, settings) for model in (models if speeds is None else settled(models, speeds.end))]
-    refined = np.unique(np.concatenate([with_critical(entry.sweep.speeds, entry.found) for entry in found]))
+    swept = found[0].sweep.speeds
+    besides = [speed for speed in settings.besides if swept[0] <= speed <= swept[-1]]
+    refined = np.unique(np.concatenate([besides, *(with_critical(entry.sweep.speeds, entry.found) for entry in found)]))
     return [_responded(entry, refined) for entry in found]
 
 

@@ -19,6 +19,7 @@ from mbs.analyses.soundness import Judged
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_model
 from mbs.commands.common import Looked, read_cage_angles, read_option, with_bands, write, write_plot
+from mbs.linearised.mode_names import mode_names
 from mbs.linearised.modes import Modes
 from mbs.linearised.shapes import skeleton
 from mbs.output.band_text import about_lines, mode_lines, share_words
@@ -154,7 +155,8 @@ def _write_shapes(arguments: argparse.Namespace, result: ModesResult, shown: Int
         lines.append(f"{file}: written, {min(len(wanted), MOST_WRITTEN)} modes{more}")
     if picture is not None and is_page(picture):
         (head, *words) = heading(result.model, result.model.scene.speed)
-        write_text(picture, shapes_page(head, " ".join(words).strip(), result.modes, bones, wanted), PAGE)
+        names = mode_names(result.balance, result.modes, kinds(result.modes)[2])
+        write_text(picture, shapes_page(head, " ".join(words).strip(), result.modes, bones, wanted, names), PAGE)
         lines.append(f"{picture}: written, {min(len(wanted), MOST_MOVING)} modes")
     elif picture is not None:
         from mbs.output.modes_plot import MOST_SHAPES, shapes_figure

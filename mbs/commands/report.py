@@ -49,7 +49,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     maps = [Path(path).name for path in arguments.map or ()]
     text = scene_report(found, _command(arguments), maps, saved, [line.strip() for line in done.lines])
     write_report(arguments.output, text)
-    failed = [reason for reason in (found.modes, found.sweep) if isinstance(reason, str) and reason]
+    failed = [reason for reason in (found.modes, found.speeds) if isinstance(reason, str) and reason]
     told = [f"warning: {line}" for line in (*warnings(found), *failed)]
     judged = Judged([("", found.findings)])
     lines = [*judged.first, *done.lines, *told, *judged.last, f"{arguments.output}: written"]

@@ -125,7 +125,7 @@ def skeleton(system: System) -> Skeleton:
         for frame in body.frames.values() if body.spin else ():
             if np.any(frame.transform[3]):
                 begin = add(index, frame.position, frame.transform[:3])
-                end = add(index, frame.position + across, frame.transform[:3] + _turned(frame, across))
+                end = add(index, frame.position + across, frame.transform[:3] + turned(frame, across))
                 lines.append((begin, end))
                 kinds.append(MARK)
     names = {body.name: index for index, body in enumerate(system.bodies)}
@@ -152,8 +152,16 @@ def skeleton(system: System) -> Skeleton:
     )
 
 
-def _turned(frame: Frame, across: FloatArray) -> FloatArray:
-    """Displacement of a place beside a frame by its rotations, shape (3, n)."""
+def turned(frame: Frame, across: FloatArray) -> FloatArray:
+    """Displacement of a place beside a frame by its rotations, shape (3, n).
+
+    Parameters
+    ----------
+    frame : Frame
+        The frame.
+    across : array, shape (3,)
+        Way from it to the place [m].
+    """
     x, y, z = across
     return np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]) @ frame.transform[3:]
 

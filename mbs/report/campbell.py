@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -19,12 +20,14 @@ from ehdmaps.report.chart import GREY, WIDE, Chart, Curve, Points, figure, linea
 from ehdmaps.report.page import Markup, joined, table, tag
 from ehdmaps.units import RPM
 from mbs.analyses.modes import ModesResult
+from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.linearised.sweep_result import Sweep
 from mbs.output.band_text import about_lines, bounds_text, lost_lines, share_words, term_words, value_text
 from mbs.output.files import RESULT
 from mbs.output.model_text import band_lines, clean, film_law_line, film_lines, free_words
 from mbs.output.reduction_text import reduction_lines
 from mbs.output.result_text import kinds
+from mbs.scene.assembly import Model
 from mbs.scene.fields import HERTZ
 from mbs.unknowns.held_open import held_open_of
 
@@ -32,7 +35,7 @@ MOST = 60
 """Modes that are listed."""
 
 
-def mode_table(found: ModesResult, highest: float, banded: bool = False) -> Markup:
+def mode_table(found: ModesResult, highest: float, banded: bool, names: Mapping[int, str]) -> Markup:
     """Return the oscillating modes up to a frequency.
 
     Parameters
@@ -43,16 +46,19 @@ def mode_table(found: ModesResult, highest: float, banded: bool = False) -> Mark
         Highest frequency that is listed [Hz].
     banded : bool
         Whether bands of what is not known stand beside them.
+    names : mapping of int to str
+        Names of the modes by their indices.
     """
     all_modes = found.modes
     free, creeping, swinging = kinds(all_modes)
     listed = swinging[all_modes.frequency[swinging] <= highest][:MOST]
     if banded:
-        return _banded_table(found, listed, highest)
+        return _banded_table(found, listed, highest, names)
     bands, law = all_modes.bands, all_modes.film_law
     rows = [
         (
             f"{k + 1}",
+            names.get(int(k), ""),
             number(float(all_modes.frequency[k]), 5),
             *([number(float(bands.frequency[k]), 2)] if bands is not None else []),
             *([_part(float(law.frequency[k]))] if law is not None else []),
@@ -64,7 +70,7 @@ def mode_table(found: ModesResult, highest: float, banded: bool = False) -> Mark
         for k in listed
     ]
     error = (*(("±",) if bands is not None else ()), *(("film law",) if law is not None else ()))
-    heads = ("mode", "frequency, Hz", *error, "damping ratio", *error, "strain energy")
+    heads = ("mode", "where", "frequency, Hz", *error, "damping ratio", *error, "strain energy")
     remarks = [
         f"{swinging.size - listed.size} more modes up to "
         f"{shown(HERTZ, float(all_modes.frequency[swinging].max(initial=0.0)))} are not listed."
@@ -91,14 +97,14 @@ def mode_table(found: ModesResult, highest: float, banded: bool = False) -> Mark
         *film_lines(found.errors, all_modes.frequency[listed]),
     ]
     return joined(
-        table(heads, rows, "Complex modes; the frequency is |eigenvalue|/(2π)", (0, len(heads) - 1))
+        table(heads, rows, "Complex modes; the frequency is |eigenvalue|/(2π)", (0, 1, len(heads) - 1))
         if listed.size
         else tag("p", f"No mode oscillates below {shown(HERTZ, highest)}."),
         *(tag("p", remark, class_="says") for remark in remarks if remark),
     )
 
 
-def _banded_table(found: ModesResult, listed: IntArray, highest: float) -> Markup:
+def _banded_table(found: ModesResult, listed: IntArray, highest: float, names: Mapping[int, str]) -> Markup:
     """The modes with what is not known of them, and what decides that."""
     bands, rows = found.bands_to(highest), []
     for k in listed.tolist():
@@ -110,8 +116,8 @@ def _banded_table(found: ModesResult, listed: IntArray, highest: float) -> Marku
             cells += [number(float(value), 3) if place is None else value_text(band, place)]
             cells += ["-" if place is None else bounds_text(band, place)]
         decided = "-" if place is None else term_words(bands.frequency.largest(place))
-        rows.append((f"{k + 1}", *cells, decided, share_words(found.modes, k)))
-    heads = ("mode", "frequency, Hz", "90 %", "damping ratio", "90 %", "frequency decided by", "strain energy")
+        rows.append((f"{k + 1}", names.get(k, ""), *cells, decided, share_words(found.modes, k)))
+    heads = ("mode", "where", "frequency, Hz", "90 %", "damping ratio", "90 %", "frequency decided by", "strain energy")
     lines = [
         *about_lines(found.model.scene, held_open_of(found.model), bands.told),
         *lost_lines(bands.frequency, [f"mode {k + 1}" for k in bands.chosen]),
@@ -120,7 +126,7 @@ def _banded_table(found: ModesResult, listed: IntArray, highest: float) -> Marku
         return tag("p", f"No mode oscillates below {shown(HERTZ, highest)}.")
     words = "Complex modes; the frequency is |eigenvalue|/(2π); 90 % of what is not known of the machine"
     return joined(
-        table(heads, rows, words, (0, len(heads) - 2, len(heads) - 1)),
+        table(heads, rows, words, (0, 1, len(heads) - 2, len(heads) - 1)),
         *(tag("p", f"{line.strip()}.", class_="says") for line in lines),
         *(tag("p", line, class_="says") for line in film_lines(found.errors, found.modes.frequency[listed])),
     )
@@ -134,7 +140,7 @@ def _part(value: float) -> str:
 LEAST_SHARE = 0.05
 """Part of the strain energy in bearings above which a mode has a colour."""
 
-MOST_NAMED, MOST_ORDERS = 12, 6
+MOST_NAMED, MOST_ORDERS = 12, 10
 MOST_DAMPED = 0.5
 """Damping ratio up to which a crossing is told: above, a response has hardly a peak by the mode."""
 
@@ -159,6 +165,8 @@ class Lines:
         [Hz], [1], part of the strain energy in bearings [1]; NaN where a mode does not oscillate.
     number : ndarray, shape (modes,)
         Numbers of the modes, from 0 on.
+    names : tuple of str
+        Their names; empty, or none at all, where they are not known.
     """
 
     speeds: FloatArray
@@ -166,6 +174,17 @@ class Lines:
     damping_ratio: FloatArray
     share: FloatArray
     number: FloatArray
+    names: tuple[str, ...] = ()
+
+    def told(self, mode: int) -> str:
+        """Name of a mode, or its number.
+
+        Parameters
+        ----------
+        mode : int
+            Place of the mode, from 0 on.
+        """
+        return (self.names[mode] if self.names else "") or f"mode {int(self.number[mode]) + 1}"
 
 
 @dataclass(frozen=True)
@@ -192,13 +211,15 @@ class Place:
         return f"campbell-{self.number + 1}" if self.number else "campbell"
 
 
-def lines_of(found: Sweep) -> Lines:
+def lines_of(found: Sweep, names: tuple[str, ...] = ()) -> Lines:
     """Return the complex modes of a sweep.
 
     Parameters
     ----------
     found : Sweep
         The sweep.
+    names : tuple of str
+        Their names.
     """
     damped = found.damped
     return Lines(
@@ -207,6 +228,7 @@ def lines_of(found: Sweep) -> Lines:
         damped.damping_ratio,
         damped.bearing_share,
         np.asarray(damped.number, dtype=np.float64),
+        names,
     )
 
 
@@ -300,7 +322,7 @@ def campbell(
     coloured.sort(key=lambda k: float(np.nanmin(lines.frequency[:, k])))
     named = coloured[:MOST_NAMED]
     curves = [
-        Curve(f"mode {int(lines.number[k]) + 1}", lines.frequency[:, k], COLOURS[i % len(COLOURS)],
+        Curve(lines.told(k), lines.frequency[:, k], COLOURS[i % len(COLOURS)],
               ("", "8 3")[i // len(COLOURS) % 2], 1.8)
         for i, k in enumerate(named)
     ]  # fmt: skip
@@ -338,6 +360,61 @@ def campbell(
     return tag("div", figure(chart), class_="single")
 
 
+def named_orders(model: Model) -> list[tuple[float, str]]:
+    """Orders that a machine excites, with names: its loads that turn, meshes, what passes raceways, cages.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with a law.
+
+    Notes
+    -----
+    A standing outer ring is passed by rolling elements so often as BPFO says, a standing inner one as BPFI.
+    """
+    found: dict[float, list[str]] = {}
+
+    def add(order: float, name: str) -> None:
+        if math.isfinite(order) and order > 0.0:
+            # rounded, for bearings that differ in the last bit only
+            found.setdefault(round(order, 6), []).append(name)
+
+    for load in model.system.turning:
+        add(abs(load.order), f"{abs(load.order):g}x {', '.join(load.names)}")
+    if not found:
+        add(1.0, "1x")
+    gears = {element.name for element in model.scene.gears}
+    for connected in model.system.elements:
+        one, element = connected.element.excitation, connected.element
+        if one is None:
+            continue
+        if element.name in gears:
+            words = element.name if "mesh" in element.name else f"mesh {element.name}"
+            add(one.order, words)
+            add(2.0 * one.order, f"2 {words}")
+            continue
+        passing = "BPFO" if not getattr(element, "outer_spin", 0.0) else "BPFI"
+        passing = passing if 0.0 in (element.inner_spin, element.outer_spin) else "passing"
+        add(one.order, f"{passing} {element.name}")
+        add(one.order / _count(element), f"cage {element.name}")
+    return [(order, _names(names)) for order, names in sorted(found.items())]
+
+
+def _count(element: Any) -> int:
+    """Number of rolling elements of a bearing."""
+    located = isinstance(element, LocatingElement)
+    return int(element.force.angles.size if located else element.bearing.geometry.rollers)
+
+
+def _names(names: Sequence[str]) -> str:
+    """Names of one order: those of a kind share its word."""
+    kinds: dict[str, list[str]] = {}
+    for name in names:
+        kind, _, own = name.rpartition(" ")
+        kinds.setdefault(kind, []).append(own)
+    return "; ".join(f"{kind} {', '.join(own)}".strip() for kind, own in kinds.items())
+
+
 def _order_curves(speeds: FloatArray, orders: Sequence[tuple[float, str]]) -> list[Curve]:
     """Lines of the orders."""
     return [
@@ -348,7 +425,7 @@ def _order_curves(speeds: FloatArray, orders: Sequence[tuple[float, str]]) -> li
 
 def _crossings(
     lines: Lines, orders: Sequence[tuple[float, str]], modes: Sequence[int]
-) -> list[tuple[float, float, str, int]]:
+) -> list[tuple[float, float, str, str]]:
     """Crossings of orders with modes that are not much damped: speed [rad/s], frequency [Hz], order, mode."""
     crossings = []
     for order, name in orders:
@@ -359,11 +436,11 @@ def _crossings(
                     continue
                 part = float(gap[i] / (gap[i] - gap[i + 1]))
                 speed = float(lines.speeds[i] + part * (lines.speeds[i + 1] - lines.speeds[i]))
-                crossings.append((speed, order * speed / (2.0 * np.pi), name, int(lines.number[k]) + 1))
+                crossings.append((speed, order * speed / (2.0 * np.pi), name, lines.told(k)))
     return sorted(crossings)
 
 
-def _says(lines: Lines, crossings: Sequence[tuple[float, float, str, int]], speed: float | None) -> list[str]:
+def _says(lines: Lines, crossings: Sequence[tuple[float, float, str, str]], speed: float | None) -> list[str]:
     """Tell what the diagram says."""
     words = [
         "Coloured modes have at least 5 % of their strain energy in bearings; modes are those of the system "
@@ -374,10 +451,10 @@ def _says(lines: Lines, crossings: Sequence[tuple[float, float, str, int]], spee
     near = min(crossings, key=lambda one: abs(one[0] - speed)) if speed is not None else crossings[0]
     return [
         *words,
-        f"Orders meet them {len(crossings)} times; nearest to the operating speed is order {near[2]} with mode "
+        f"Orders meet them {len(crossings)} times; nearest to the operating speed is order {near[2]} with "
         f"{near[3]} at {number(RPM.value(near[0]))} rpm and {shown(HERTZ, near[1])}."
         if speed is not None
-        else f"Orders meet them {len(crossings)} times, first order {near[2]} with mode {near[3]} at "
+        else f"Orders meet them {len(crossings)} times, first order {near[2]} with {near[3]} at "
         f"{number(RPM.value(near[0]))} rpm and {shown(HERTZ, near[1])}.",
     ]
 

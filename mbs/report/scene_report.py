@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import xarray as xr
@@ -13,13 +12,20 @@ from ehdmaps.jobs.show.map_report import job, provenance, written_by
 from ehdmaps.program import plain
 from ehdmaps.report.page import Markup, Section, document, joined, pairs, sentences, tag
 from ehdmaps.units import RPM
-from mbs.analyses.sensors import excited_orders
+from mbs.linearised.mode_names import mode_names
 from mbs.model.findings import warned
+from mbs.output.result_text import kinds
+from mbs.output.shapes.shapes_page import moving, moving_shapes
 from mbs.report.bearings import bearings
-from mbs.report.campbell import campbell, lines_of, mode_table, saved_campbell
+from mbs.report.campbell import campbell, lines_of, mode_table, named_orders, saved_campbell
 from mbs.report.examination import Examination, highest_of
 from mbs.report.located import located_bearings
 from mbs.report.machine import in_short, machine, map_sections, notes, used_maps, warnings
+from mbs.report.safety import safety
+from mbs.report.sketch import sketch
+from mbs.report.solid import dressed
+from mbs.report.speeds import critical_table, unbalance_parts
+from mbs.report.transfer import transfer
 
 
 def scene_report(
@@ -47,6 +53,7 @@ def scene_report(
     scene = found.model.scene
     used = list(used_maps(found))
     warning_lines = [*warned(found.findings), *warnings(found)]
+    names, limiting = _mode_names(found), _limits(warning_lines, [*notes(found), *remarks])
     sections = [
         Section(
             "summary",
@@ -56,50 +63,109 @@ def scene_report(
                 *(tag("p", typeset(f"Warning: {line}"), class_="warning") for line in warning_lines),
             ],
         ),
-        Section("machine", "Machine, law and oil", [machine(found)]),
+        Section("machine", "What was assumed?", [sketch(found.model), machine(found)]),
     ]
-    if found.model.bearings:
-        sections.append(Section("bearings", "Bearings in operation", list(bearings(found))))
-    if locating := list(located_bearings(found)):
-        sections.append(Section("locating", "Bearings with axial load in operation", locating))
+    if carried := safety(found):
+        details = [carried, *bearings(found), *located_bearings(found)]
+        sections.append(Section("bearings", "Where is the equilibrium, and do the bearings carry it?", details))
+    sections += [
+        Section("critical", "Where are critical speeds, and how far from operation?", [_critical(found)]),
+        Section("unbalance", "What do unbalances do?", [_unbalance(found)]),
+        Section("transfer", "What reaches the sensors, dry beside films?", _transfer(found, names)),
+        Section("campbell-diagram", "Which orders meet which modes?", [_campbell(found, saved)]),
+        Section("modes", f"Which modes are there at {RPM.text(scene.speed)}, and where is their energy?",
+                [_modes(found, names), *_moving(found, names)]),
+        Section("limits", "What is not known, and what would it change?", [limiting]),
+        *([budget_section(found.budget)] if found.budget else []),
+    ]  # fmt: skip
     for index, one in enumerate(used):
         sections += map_sections(one, f"map-{index}", len(used) > 1)
     if not used:
         words = f"The law is that of {found.model.law}: no map stands behind it, and there are no curves of one."
         sections.append(Section("law", "Contact law", [tag("p", words)]))
-    sections += [
-        Section("modes", f"Modes at {RPM.text(scene.speed)}", [_modes(found)]),
-        Section("campbell-diagram", "Campbell diagram", [_campbell(found, saved)]),
-        *([budget_section(found.budget)] if found.budget else []),
-        Section("limits", "What limits these numbers", [_limits(warning_lines, [*notes(found), *remarks])]),
-        Section("provenance", "Provenance", [_provenance(found, command, maps)]),
-    ]
+    sections.append(Section("provenance", "Provenance", [_provenance(found, command, maps)]))
     lead = f"{RPM.text(scene.speed)}; law {found.model.law}."
-    return document(scene.title, typeset(lead), sections)
+    return document(scene.title, typeset(lead), sections, (moving(),))
 
 
-def _modes(examination: Examination) -> Markup:
+def _mode_names(found: Examination) -> dict[int, str]:
+    """Names of the oscillating modes."""
+    if isinstance(found.modes, str):
+        return {}
+    return mode_names(found.modes.balance, found.modes.modes, kinds(found.modes.modes)[2])
+
+
+def _none(words: str, reason: str) -> Markup:
+    """A sentence that there is no answer."""
+    return tag("p", f"{words}: {reason}" if reason else f"{words}.", class_="warning" if reason else None)
+
+
+def _critical(found: Examination) -> Markup:
+    """The critical speeds, or why there are none."""
+    if isinstance(found.speeds, str):
+        return _none("Speeds were not looked at", found.speeds)
+    if found.speeds.critical is None:
+        return tag("p", "No body spins: no speed is critical.")
+    return critical_table(found.speeds.critical, found.speeds.critical_names)
+
+
+def _unbalance(found: Examination) -> Markup:
+    """Response to loads that turn, or why that is not known."""
+    if isinstance(found.speeds, str):
+        return _none("Speeds were not looked at", found.speeds)
+    if found.speeds.critical is None:
+        return tag("p", "No body spins.")
+    return unbalance_parts(found.speeds.critical)
+
+
+def _transfer(found: Examination, names: dict[int, str]) -> list[Markup]:
+    """Transfer paths, or why there are none."""
+    if isinstance(found.transfer, str):
+        return [_none("There are no transfer paths", found.transfer)]
+    first = found.transfer[0]
+    own = mode_names(first.balance, first.modes, kinds(first.modes)[2])
+    return list(transfer(found.transfer, own or names))
+
+
+def _modes(examination: Examination, names: dict[int, str]) -> Markup:
     """The modes, or why there are none."""
     if isinstance(examination.modes, str):
         return tag("p", f"There are no modes: {examination.modes}", class_="warning")
-    return mode_table(examination.modes, highest_of(examination.model.scene), examination.banded)
+    return mode_table(examination.modes, highest_of(examination.model.scene), examination.banded, names)
+
+
+_LARGEST, _PER_PLACE = 1_000_000, 16
+"""Bytes that shapes that move may take of a report, and those of a place and mode."""
+
+_MOST_MOVING = 24
+"""Modes that move."""
+
+
+def _moving(examination: Examination, names: dict[int, str]) -> list[Markup]:
+    """Shapes of the modes that move, as far as there is room for them."""
+    if isinstance(examination.modes, str):
+        return []
+    found, bones = examination.modes.modes, dressed(examination.modes.model)
+    listed = [k for k in names if found.frequency[k] <= highest_of(examination.model.scene)]
+    room = _LARGEST // (_PER_PLACE * max(len(bones.points), 1))
+    shown = listed[: min(room, _MOST_MOVING)]
+    if not shown:
+        return [tag("p", "Mode shapes that move: mbs modes --shapes modes.html")] if listed else []
+    return [tag("h3", "Shapes that move"), moving_shapes(found, bones, shown, names)]
 
 
 def _campbell(examination: Examination, saved: tuple[str, xr.Dataset] | None) -> Markup:
     """The diagram, or why there is none."""
     model = examination.model
     given = model.scene.campbell.orders
-    # modes of a linear system, not of a run: no order is too slow for it
-    excited = {1.0: "1", **dict(excited_orders(model, math.inf))}
-    orders = [(order, f"{order:g}") for order in given] if given else sorted(excited.items())
+    orders = [(order, f"{order:g}") for order in given] if given else named_orders(model)
     if saved is not None:
         name, dataset = saved
         return saved_campbell(dataset, orders, highest_of(examination.model.scene), name)
-    if isinstance(examination.sweep, str):
-        return tag("p", f"There is no Campbell diagram: {examination.sweep}", class_="warning")
-    return campbell(
-        lines_of(examination.sweep.sweeps[0]), orders, highest_of(examination.model.scene), model.scene.speed
-    )
+    if isinstance(examination.speeds, str):
+        return tag("p", f"There is no Campbell diagram: {examination.speeds}", class_="warning")
+    lines = lines_of(examination.speeds.sweep, examination.speeds.names)
+    return campbell(lines, orders, highest_of(examination.model.scene), model.scene.speed)
 
 
 def _limits(warning_lines: Sequence[str], note_lines: Sequence[str]) -> Markup:

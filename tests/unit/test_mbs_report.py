@@ -127,7 +127,7 @@ def test_a_scene_with_dry_contacts(here, capsys, monkeypatch):
     assert capsys.readouterr().out == "mine.html: written\n"
     written = Path("mine.html").read_text()
     report = Report(written)
-    report.check_alone()
+    report.check_alone(2)
     assert report.words.count(HOSTILE) >= 3  # heading, title of the window, text of the scene
     assert "law dry Hertz, ISO 16281" in report.words and "no map stands behind it" in report.words
     assert not re.search(r"\b(nan|inf|None)\b", report.words)

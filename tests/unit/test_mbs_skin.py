@@ -176,11 +176,12 @@ class TestPictures:
 
     def test_a_page_holds_the_shapes(self, moving):
         found, bones = moving
-        page = shapes_page("A <title>", "words", found, bones, [1])
+        page = shapes_page("A <title>", "words", found, bones, [1], {1: "first of <b>"})
         assert "<title>A &lt;title&gt;</title>" in page and not re.search(r"https?://", page)
-        data = json.loads(re.search(r"const data = (.*);\n", page)[1])
+        data = json.loads(re.search(r'id="shapes-data">(.*?)</script>', page)[1])
         assert data["names"][0] == ["<b>", "surface"]
         (mode,) = data["modes"]
+        assert mode["name"].endswith("(first of <b>)")
         parts = [np.frombuffer(base64.b64decode(mode[name]), dtype="<i2") / 32767 for name in ("real", "imaginary")]
         # 16 bits
         np.testing.assert_allclose(

@@ -24,7 +24,6 @@ from mbs.commands.one_bearing.files import SOURCE, UNIT, Export, bearing_outputs
 from mbs.commands.one_bearing.linear_files import count_problems, ending_of
 from mbs.commands.one_bearing.shared import (
     CELSIUS_40,
-    ROUGHNESS,
     read_choices,
     read_dielectric,
     read_heat,
@@ -36,6 +35,7 @@ from mbs.commands.one_bearing.shared import (
 )
 from mbs.model.findings import Cause, Finding
 from mbs.output.one_bearing.kind import Description, Number, Points
+from mbs.output.one_bearing.table import ROUGHNESS
 from mbs.scene.contact_laws import table_path
 from mbs.scene.fields import MICROMETRE
 from mbs.scene.map_set import TABLE_LAW

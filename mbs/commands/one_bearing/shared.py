@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from ehdmaps.physics.point.ball_geometry import BallGeometry
     from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 
-CELSIUS_40, ROUGHNESS = 313.15, 0.3e-6
-"""Assumed where nothing is given: the temperature of the raceways [K], the combined rms roughness [m]."""
+CELSIUS_40 = 313.15
+"""Temperature of the raceways that is assumed where nothing is given [K]."""
 
 
 MOST_POINTS = 500

@@ -257,6 +257,9 @@ WIDE_RANGE = 20.0
 REGIMES = ((1.0, "boundary: the surfaces touch"), (3.0, "mixed: asperities touch"), (math.inf, "full film"))
 """What is usually said of Lambda below these values."""
 
+ROUGHNESS = 0.3e-6
+"""Combined rms roughness of both surfaces that is assumed where none is stated [m]."""
+
 
 def regime(film_parameter: float) -> str:
     """Lubrication regime by Lambda, in usual words."""

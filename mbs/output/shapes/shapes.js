@@ -1,37 +1,10 @@
-<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="generator" content="@MARK@">
-<title>@TITLE@</title>
-<style>
-body { font: 14px/1.4 system-ui, sans-serif; margin: 1em auto; max-width: 1100px; padding: 0 1em; color: #222; }
-h1 { font-size: 1.25em; margin: 0; } p { margin: .2em 0 .8em; color: #555; }
-form { display: flex; flex-wrap: wrap; gap: .4em 1.4em; align-items: center; }
-label { display: inline-flex; gap: .5em; align-items: center; } input[type=range] { width: 8em; }
-canvas { width: 100%; height: 68vh; display: block; margin: .6em 0; border: 1px solid #ddd; touch-action: none; }
-#names span { margin-right: 1.4em; white-space: nowrap; } #names i { display: inline-block; width: 1.6em; height: .8em;
-margin-right: .4em; } .surface { background: linear-gradient(90deg, #440154, #3b528b, #21918c, #5ec962, #fde725); }
-</style>
-</head>
-<body>
-<h1>@TITLE@</h1>
-<p>@WORDS@</p>
-<form>
-<label>mode <select id="mode"></select></label>
-<label>size <input type="range" id="size" min="0" max="25" value="8"></label>
-<label>speed <input type="range" id="speed" min="0" max="40" value="12"></label>
-<label>surface <input type="range" id="opacity" min="0" max="100" value="70"></label>
-<button type="button" id="pause">pause</button>
-</form>
-<canvas id="view"></canvas>
-<div id="names"></div>
-<p>Drag to turn, with Shift to move; the wheel zooms. Colours of surfaces: amplitude, up to the largest of the mode.
-Displacements are enlarged.</p>
-<script>
-const data = @DATA@;
+"use strict";
+// Mode shapes that move, in WebGL 2: turned by the mouse, enlarged, surfaces coloured by amplitude.
+(() => {
+const get = name => document.getElementById("shapes-" + name);
+const data = JSON.parse(get("data").textContent);
 
-const get = name => document.getElementById(name), canvas = get("view");
+const canvas = get("view");
 const gl = canvas.getContext("webgl2", {antialias: true, preserveDrawingBuffer: true});
 const bytes = text => Uint8Array.from(atob(text), letter => letter.charCodeAt(0)).buffer;
 const points = new Float32Array(bytes(data.points)), triangles = new Uint32Array(bytes(data.triangles));
@@ -177,6 +150,4 @@ canvas.addEventListener("wheel", event => {
 }, {passive: false});
 get("pause").onclick = () => { running = !running; get("pause").textContent = running ? "pause" : "go on"; };
 requestAnimationFrame(draw);
-</script>
-</body>
-</html>
+})();

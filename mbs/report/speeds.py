@@ -1,0 +1,186 @@
+"""Speeds of a report: critical ones with their margin to operation, and what loads that turn do."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.figures import COLOURS
+from ehdmaps.report.chart import WIDE, Chart, Curve, Shade, figure, linear_axis, log_axis, number, shown
+from ehdmaps.report.page import Markup, joined, table, tag
+from ehdmaps.units import MOTIONS, RPM
+from mbs.analyses.sweep import CriticalResult
+from mbs.linearised.critical import CriticalSpeed
+from mbs.linearised.linear import sensor_unit
+from mbs.linearised.mode_names import IN_A_PLANE
+from mbs.output.sweep_data import sensed
+from mbs.report.examination import operating_range
+from mbs.scene.fields import FORCE
+
+SHARP = 2.5
+"""Amplification factor, 1/(2 zeta), below which API 617 asks for no margin."""
+
+
+def asked_margin(damping_ratio: float, above: bool) -> float:
+    """Margin that API 617 asks for between a critical speed and the operating range, as a part of the nearer end.
+
+    Parameters
+    ----------
+    damping_ratio : float
+        Damping ratio of the mode at its critical speed.
+    above : bool
+        Whether the critical speed lies above the range.
+
+    References
+    ----------
+    API 617, 7th edition, 2002, equations 1.2-4 and 1.2-5: 17 (1 - 1/(AF - 1.5)) % below, 10 % more above the range.
+
+    Examples
+    --------
+    >>> round(asked_margin(0.05, above=True), 3), asked_margin(0.3, above=True)
+    (0.25, 0.0)
+    """
+    factor = 1.0 / (2.0 * damping_ratio) if damping_ratio > 0.0 else math.inf
+    if factor < SHARP:
+        return 0.0
+    return (0.1 if above else 0.0) + 0.17 * (1.0 - 1.0 / (factor - 1.5))
+
+
+def critical_table(found: CriticalResult, names: Sequence[str]) -> Markup:
+    """Return the critical speeds with their margins to operation.
+
+    Parameters
+    ----------
+    found : CriticalResult
+        Critical speeds.
+    names : sequence of str
+        Names of the modes of the critical speeds, by where their energy is; empty where that is not known.
+    """
+    low, high = operating_range(found.model.scene)
+    end = float(np.abs(found.sweep.speeds).max())
+    span = f"{_rpm(low)} to {_rpm(high)}" if high > low else _rpm(high)
+    looked = f"Speeds up to {_rpm(end)} were looked at; operation is {span}."
+    if not found.found:
+        return tag("p", f"There is no critical speed. {looked}")
+    rows, near = [], list[str]()
+    for entry, name in zip(found.found, names, strict=True):
+        margin, above = _margin(entry, low, high)
+        asked = asked_margin(entry.damping_ratio, above)
+        words = "inside" if margin is None else f"{100.0 * margin:.3g} % {'above' if above else 'below'}"
+        short = (margin is None or margin < asked) and asked > 0.0
+        ask = f"{100.0 * asked:.2g} %" if asked else "none"
+        factor = 1.0 / (2.0 * entry.damping_ratio) if entry.damping_ratio > 0.0 else math.inf
+        rows.append(
+            (
+                f"{name or f'mode {entry.mode + 1}'}{_turning(entry.whirl)}",
+                number(entry.order, 4),
+                number(RPM.value(entry.speed), 5),
+                number(entry.eigenvalue.imag / (2.0 * math.pi), 4),
+                number(max(entry.damping_ratio, 0.0), 2),
+                number(factor, 3) if math.isfinite(factor) else "-",
+                words,
+                ask + (", not kept" if short else ""),
+            )
+        )
+        if short:
+            near.append(f"{_rpm(entry.speed)} ({name or f'mode {entry.mode + 1}'}, order {number(entry.order, 4)})")
+    heads = (
+        "mode", "order", "speed, rpm", "frequency, Hz", "damping ratio", "amplification", "from operation",
+        "asked by API 617",
+    )  # fmt: skip
+    said = f"Too near to operation: {'; '.join(near)}." if near else "All keep the margin that API 617 asks for."
+    return joined(
+        table(heads, rows, "Critical speeds", (0, 6, 7)),
+        tag("p", f"{looked} {said}", class_="warning" if near else "says"),
+    )
+
+
+def _turning(whirl: float) -> str:
+    """Direction of whirl in words; none of a motion along or about the axis."""
+    if not math.isfinite(whirl):
+        return ""
+    return ", in a plane" if abs(whirl) < IN_A_PLANE else f", {'forward' if whirl > 0.0 else 'backward'}"
+
+
+def _margin(entry: CriticalSpeed, low: float, high: float) -> tuple[float | None, bool]:
+    """Distance of a critical speed from operation, as a part of the nearer end, and whether it lies above."""
+    if entry.speed > high:
+        return (entry.speed / high - 1.0 if high > 0.0 else math.inf), True
+    return (None, False) if entry.speed >= low else (1.0 - entry.speed / low, False)
+
+
+def unbalance_parts(found: CriticalResult) -> Markup:
+    """Return what loads that turn do: sensors and forces at operation, and the largest in its range, with a chart.
+
+    Parameters
+    ----------
+    found : CriticalResult
+        Responses to loads that turn.
+    """
+    system, sensors, speeds = found.model.system, found.model.scene.sensors, np.abs(found.speeds)
+    if not found.responses:
+        return tag("p", "The scene has no unbalance and no load that turns.")
+    low, high = operating_range(found.model.scene)
+    speed = abs(found.model.scene.speed)
+    inside = np.flatnonzero((speeds >= low) & (speeds <= high))
+    parts: list[Markup] = []
+    for row, response in enumerate(found.responses):
+        seen = np.abs(sensed(system, sensors, found.speeds, response))
+        forces = found.dataset["element_force"].values[row]
+        curves = [
+            (f"sensor {sensor.name}", MOTIONS[sensor_unit(sensor)], seen[:, k]) for k, sensor in enumerate(sensors)
+        ]
+        curves += [
+            (f"force on {connected.element.name}", FORCE, forces[:, k])
+            for k, connected in enumerate(system.elements)
+            if forces[:, k].max(initial=0.0) > 0.0
+        ]
+        rows = []
+        for name, display, values in curves:
+            most = int(np.argmax(values))
+            cells = [shown(display, float(np.interp(speed, speeds, values))) if _within(speed, speeds) else "-"]
+            if high > low:
+                worst = int(inside[np.argmax(values[inside])]) if inside.size else most
+                cells.append(f"{shown(display, float(values[worst]))} at {_rpm(speeds[worst])}" if inside.size else "-")
+            rows.append((name, *cells, f"{shown(display, float(values[most]))} at {_rpm(speeds[most])}"))
+        heads = ("", f"at {_rpm(speed)}", *(("largest in operation",) if high > low else ()), "largest of all")
+        words = f"Order {number(response.order, 4)}: {', '.join(response.names)}; amplitudes"
+        parts += [
+            table(heads, rows, words, tuple(range(len(heads)))),
+            _chart(row, response.order, speeds, curves, found),
+        ]
+    return joined(*parts)
+
+
+def _within(speed: float, speeds: FloatArray) -> bool:
+    """Tell whether a speed lies among others."""
+    return bool(speeds[0] <= speed <= speeds[-1])
+
+
+def _chart(
+    row: int, order: float, speeds: FloatArray, curves: Sequence[tuple[str, object, FloatArray]], found: CriticalResult
+) -> Markup:
+    """Forces over speed."""
+    forces = [(name, values) for name, display, values in curves if display is FORCE][: len(COLOURS)]
+    low, high = operating_range(found.model.scene)
+    everything = np.concatenate([values for _, values in forces]) if forces else np.ones(1)
+    chart = Chart(
+        f"unbalance-{row + 1}",
+        f"Forces on the seats by order {number(order, 4)} over speed",
+        "Amplitudes of the radial force of each bearing.",
+        linear_axis("speed", "rpm", RPM.factor * speeds, from_zero=False),
+        log_axis("force", "N", everything, floor=1e-5, room=1.2),
+        RPM.factor * speeds,
+        [Curve(name, values, COLOURS[k % len(COLOURS)]) for k, (name, values) in enumerate(forces)],
+        shades=[Shade("operation", RPM.value(low), RPM.value(high))],
+        frame=WIDE,
+    )
+    return tag("div", figure(chart), class_="single")
+
+
+def _rpm(speed: float) -> str:
+    """A speed in words."""
+    return f"{number(RPM.value(abs(float(speed))), 5)} rpm"
