@@ -43,6 +43,7 @@ taper/taper.h, _lines.c       sums over the slices of a line of a tapered roller
 taper/taper_balance.c         the balance of such a roller
 taper/taper_bearing.c         force, stiffness and damping of its bearing at a pose
 taper/taper_films.c           its films with a memory
+run/deviations.[hc]           deviations of bearings from their form: waves, spalls, sizes
 run/rings.[hc]                bearings with cylindrical rollers in runs: how rings and rollers move
 cylinder/cylinder_block.[hc]  such bearings whose films follow at once, or which are dry, as a kind of elements
 film/film_block.c             such bearings with films that have a memory, as a kind of elements

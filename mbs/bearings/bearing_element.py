@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from ehdmaps.maps.law import ContactLaw
     from ehdmaps.physics.lubricant import Lubricant
     from mbs.bearings.contact_report import BearingContacts, RollingLoss
+    from mbs.bearings.deviations import DeviationData, Deviations
     from mbs.bearings.slices_in_balance import Side
     from mbs.model.condensed import Condensed
 
@@ -108,6 +109,13 @@ class RingElement(OnRings):
         self, states: FilmStates | None, displacement: FloatArray, velocity: FloatArray, operation: Operation
     ) -> tuple[Forces, FilmStates | None]:
         """A step of films with memory, by no rates, as `ContactLaw.advance` for all slices; see `Element.advance`."""
+        with self.deviating(operation):
+            return self._advanced(states, displacement, velocity, operation)
+
+    def _advanced(
+        self, states: FilmStates | None, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> tuple[Forces, FilmStates | None]:
+        """The same with the deviations of that time."""
         if not self.relaxes:
             return super().advance(states, displacement, velocity, operation)
         before = None if states is None else states.films
@@ -123,24 +131,54 @@ class RingElement(OnRings):
         velocity: FloatArray,
         operation: Operation,
     ) -> Powers | None:
-        """Power that contacts or films with memory take up, what cage and rollers bring in; see `Element.powers`."""
+        """Power that contacts or films take up, that cage, rollers and deviations bring in; see `Element.powers`."""
         if not self.flat_laws:
             return None
+        rates = (
+            None if self.deviation_data is None else self.deviation_data.at(operation.angle, operation.speed)[..., 1]
+        )
         if states is None:
-            at_rest = self.evaluate(displacement, np.zeros_like(velocity), operation).force
+            still = np.zeros_like(velocity)
+            with self.deviating(operation):
+                moving = None if rates is None else self.contact_loads(displacement, velocity, operation)
+            with self.deviating(operation._replace(speed=0.0)):
+                at_rest = self.evaluate(displacement, still, operation).force
+                resting = None if rates is None else self.contact_loads(displacement, still, operation)
             brought = self.brought_in(at_rest, displacement, velocity, operation)
-            return Powers(-float((force - at_rest) @ velocity), brought)
+            dissipated = -float((force - at_rest) @ velocity)
+            if rates is not None and moving is not None and resting is not None:
+                dissipated, brought = (
+                    dissipated + float(np.sum((moving - resting) * rates)),
+                    brought + float(np.sum(moving * rates)),
+                )
+            return Powers(dissipated, brought)
         memories, length = self.in_time(operation)
         spent = 0.0
         if states.before is not None:
             sides = zip(memories, states.before, states.films, strict=True)
             spent = sum(float(np.sum(memory.spent(before, films))) for memory, before, films in sides)
-        return Powers(0.0, self.brought_in(force, displacement, velocity, operation), spent * length)
+        brought = self.brought_in(force, displacement, velocity, operation)
+        if rates is not None:  # massless rollers have one film for both sides
+            brought += length * float(
+                np.sum(np.stack([films.load.sum(axis=1) for films in states.films], axis=1) * rates)
+            )
+        return Powers(0.0, brought, spent * length)
+
+    def contact_loads(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> FloatArray:
+        """Loads of the contacts of each roller, without films that relax, shape (Z, 2), or (Z, 1) of both alike [N].
+
+        Parameters
+        ----------
+        displacement, velocity, operation
+            What `evaluate` takes.
+        """
+        raise NotImplementedError
 
     def stored(self, states: FilmStates | None, displacement: FloatArray, operation: Operation) -> float | None:
         """Energy of its contacts at rest [J], or of the solids and of films that follow, see `Element.stored`."""
         if states is None:
-            return self.stored_at_rest(displacement, operation)
+            with self.deviating(operation):
+                return self.stored_at_rest(displacement, operation)
         memories, length = self.in_time(operation)
         sides = zip(memories, states.films, strict=True)
         return sum(float(np.sum(memory.stored(films))) for memory, films in sides) * length
@@ -271,6 +309,8 @@ class BearingElement(RingElement):
         Whether its rings may tilt against each other; runs in time feel less, and compute less, where they cannot.
     source : FilmSource or None
         What knows pressures and films of its contacts; None for those of dry contacts.
+    deviations : Deviations or None
+        Deviations from its form, which excite runs in time.
 
     Raises
     ------
@@ -291,6 +331,7 @@ class BearingElement(RingElement):
     films: Films = "slow"
     tilts: bool = True
     source: FilmSource | None = None
+    deviations: Deviations | None = None
 
     def __post_init__(self) -> None:
         wrong = (
@@ -344,6 +385,28 @@ class BearingElement(RingElement):
         spins = (self.inner_spin, self.outer_spin)
         centrifugal = self.bearing.centrifugal_load(*spins) if self.centrifugal else 0.0
         return self.bearing.cage_angle(*spins), self.bearing.geometry.entrainment_speed(*spins), centrifugal
+
+    def deviate(self, added: FloatArray | None) -> None:
+        """See `OnRings.deviate`."""
+        self.force.deviate(added)
+
+    def contact_loads(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> FloatArray:
+        """Loads that both sides of massless rollers have, see `RingElement.contact_loads`."""
+        conditions, load = self.conditions(operation), self.centrifugal_load(operation)
+        return self.force.rollers(displacement, velocity, **conditions, centrifugal_load=load).load[:, None]
+
+    @cached_property
+    def deviation_data(self) -> DeviationData | None:
+        """Tables of its deviations; None without any."""
+        if self.deviations is None:
+            return None
+        from mbs.bearings.deviations import Turns, deviation_data  # with what few scenes state
+
+        geometry, each = self.bearing.geometry, np.arange(self.bearing.geometry.rollers)
+        turns = Turns.of(geometry, self.inner_spin, self.outer_spin)
+        return deviation_data(
+            self.deviations, geometry, turns, self.start_angle, 2.0 * math.pi * each / each.size, each
+        )
 
     @property
     def lubricant(self) -> Lubricant | None:
@@ -507,6 +570,8 @@ class BearingElement(RingElement):
         def approaches(sample: int) -> FloatArray:
             approach = np.empty((arrays.shape.rollers, arrays.shape.slices))
             state[:6], state[12] = displacements[sample], self.cage_angle(operations[sample])
+            if self.deviation_data is not None:
+                arrays.shape.put(added=self.deviation_data.at(operations[sample].angle, operations[sample].speed))
             arrays.approaches(state, approach)
             return approach
 

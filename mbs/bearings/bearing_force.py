@@ -412,6 +412,16 @@ class BearingForce:
             lambda pose, velocity: point(pose, velocity, cage_angle), inner, outer, outer_spin, outer_spin_rate
         )
 
+    def deviate(self, added: FloatArray | None) -> None:
+        """Add approaches to the rollers, see `mbs.model.elements.OnRings.deviate`.
+
+        Parameters
+        ----------
+        added : array (Z, 2, 2) or None
+            Approaches and rates of both contacts.
+        """
+        self._work.shape.put(added=added)
+
     def _prepared(self, entrainment_speed: float, temperature: float, centrifugal_load: float) -> ForceAtPoint:
         """The element at this point: the one of the last call, or a new law in its place."""
         current = self._current

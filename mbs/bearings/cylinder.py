@@ -141,8 +141,13 @@ class Cylinder(Record):
         ("cosine", numbers),
         ("sine", numbers),
         ("weight", numbers),
+        ("added", numbers),
     ]
-    shapes: ClassVar = {"cosine": ("rollers",), "sine": ("rollers",), "weight": ("slices",)}
+    shapes: ClassVar = {
+        **dict.fromkeys(("cosine", "sine"), ("rollers",)),
+        "weight": ("slices",),
+        "added": ("rollers", 2, 2),
+    }
 
 
 class CylinderWork(Record):

@@ -17,7 +17,7 @@ from __future__ import annotations
 import ctypes
 import dataclasses
 from collections.abc import Iterable, Sequence
-from typing import ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from ehdmaps.kernel.record import Record, integers, numbers
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import FELT, LEVEL, BearingElement, RingElement
 from mbs.bearings.cylinder import cylinder_of
+from mbs.bearings.deviations import gathered
 from mbs.bearings.laws import FlatLaw
 from mbs.bearings.roller_element import RollerElement
 from mbs.bearings.speed_tables import shared
@@ -80,12 +81,16 @@ class Rings(Record):
         Place of the first roller among what all elements feel, where rollers are bodies.
     outward : array (bearings,)
         Centrifugal force of a roller that is a body by the square of the speed [N s2/rad2].
+    deviations : address or None
+        Deviations of each bearing from its form, see `mbs.bearings.deviations`.
     """
 
+    deviating: Any = None
     _fields_ = (
         *((name, ctypes.c_int64) for name in ("count", "sides", "most_rollers", "most_slices")),
         *((name, integers) for name in _WHOLE),
         *((name, numbers) for name in _REAL),
+        ("deviations", ctypes.c_void_p),
     )
     shapes: ClassVar = {
         **dict.fromkeys((*_WHOLE, "start_angles", "cage_rates", "outward"), ("count",)),
@@ -209,7 +214,8 @@ def gather_rings(members: Sequence[Member], films_of: IntArray) -> Rings:
     )
     cosine, sine = (_padded([shape.given(name) for shape in shapes]) for name in ("cosine", "sine"))
     count, sides = films_of.shape
-    return checked(Rings, "ehd_rings")(
+    kept, deviations = gathered([element.deviation_data for element in plains])
+    rings = checked(Rings, "ehd_rings")(
         count=count,
         sides=sides,
         most_rollers=cosine.shape[1],
@@ -230,7 +236,10 @@ def gather_rings(members: Sequence[Member], films_of: IntArray) -> Rings:
         weights=_padded([np.append(fold.weights, 0.0) for fold in folds]),
         alone=_whole(member.alone for member in members),
         outward=np.array([plain.rates[2] * plain.bearing.geometry.roller_length for plain in plains], dtype=np.float64),
+        deviations=deviations,
     )
+    rings.deviating = kept
+    return rings
 
 
 def _padded(rows: Sequence[FloatArray]) -> FloatArray:

@@ -48,6 +48,11 @@ class RollerContacts:
         Laws of a single contact: `hertz(bearing).single()` or `constant(k, c).single()` of `mbs.bearings.laws`, or the
         laws "inner" and "outer" of a map.
 
+    Attributes
+    ----------
+    added : array (Z, 2, 2) or None
+        Approach and rate that deviations add to both contacts, see `mbs.model.elements.OnRings.deviate`.
+
     Raises
     ------
     InputError
@@ -65,6 +70,7 @@ class RollerContacts:
         self.flat_laws = (FlatLaw(inner), FlatLaw(outer))
         self._points: dict[int, LawAtPoint] = {}
         self._x = bearing.slice_positions
+        self.added: FloatArray | None = None
         self._depths = bearing.profile_depths + 0.25 * bearing.geometry.diametral_clearance
 
     @property
@@ -120,13 +126,44 @@ class RollerContacts:
         f, K, C = np.zeros(self.size), np.zeros((self.size, self.size)), np.zeros((self.size, self.size))
         outside = False
         for side, (flat, tilted), delta in self._contacts(q, cage_angle):
-            rate = (flat @ v)[:, None] + self._x * (tilted @ v)[:, None]
+            rate = self._rate(side, (flat, tilted), v)
             load, k, c, beyond = self._evaluate(side, delta, rate, entrainment_speed, temperature)
             outside |= beyond
             f -= flat.T @ load.sum(axis=1) + tilted.T @ (load @ self._x)
             K += self._matrix(flat, tilted, k)
             C += self._matrix(flat, tilted, c)
         return Forces(f, K, C, outside)
+
+    def loads(
+        self,
+        displacement: npt.ArrayLike,
+        velocity: npt.ArrayLike,
+        *,
+        cage_angle: float,
+        entrainment_speed: float,
+        temperature: float,
+    ) -> FloatArray:
+        """Loads of both contacts of each roller, shape (Z, 2) [N].
+
+        Parameters
+        ----------
+        displacement, velocity : array (12 + Z,)
+            What a call takes.
+        cage_angle, entrainment_speed, temperature : float
+            The same as for `BearingForce`.
+        """
+        q, v = self._vector("displacement", displacement), self._vector("velocity", velocity)
+        found = [
+            self._evaluate(side, delta, self._rate(side, rows, v), entrainment_speed, temperature)[0].sum(axis=1)
+            for side, rows, delta in self._contacts(q, cage_angle)
+        ]
+        return np.stack(found, axis=1)
+
+    def _rate(self, side: int, rows: tuple[FloatArray, FloatArray], v: FloatArray) -> FloatArray:
+        """Rates of the approaches of one side, (Z, n) [m/s]."""
+        flat, tilted = rows
+        rate = (flat @ v)[:, None] + self._x * (tilted @ v)[:, None]
+        return np.asarray(rate if self.added is None else rate + self.added[:, side, 1:])
 
     def advance(
         self,
@@ -296,7 +333,8 @@ class RollerContacts:
         """Each side, its rows, and the approach of its slices, shape (Z, n)."""
         for side in (0, 1):
             flat, tilted = self._rows(side, cage_angle)
-            yield side, (flat, tilted), (flat @ q)[:, None] + self._x * (tilted @ q)[:, None] - self._depths
+            depths = self._depths if self.added is None else self._depths - self.added[:, side, :1]
+            yield side, (flat, tilted), (flat @ q)[:, None] + self._x * (tilted @ q)[:, None] - depths
 
     def _matrix(self, flat: FloatArray, tilted: FloatArray, values: FloatArray) -> FloatArray:
         """Sum of values B B^T over the slices."""

@@ -24,6 +24,7 @@ from mbs.model.relaxation import Films, Relaxation
 
 if TYPE_CHECKING:
     from ehdmaps.maps.kernels.memory import FilmMemory, FilmState
+    from mbs.bearings.deviations import DeviationData
     from mbs.bearings.slices_in_balance import Side
 
 
@@ -109,6 +110,19 @@ class RollerElement(RingElement):
         """See `RingElement.contact_rates`: the centrifugal load acts on the rollers, and not in their contacts."""
         return self.plain.rates[1], 0.0
 
+    @property
+    def deviation_data(self) -> DeviationData | None:
+        """Tables of its deviations; None without any."""
+        return self.plain.deviation_data
+
+    def deviate(self, added: FloatArray | None) -> None:
+        """See `OnRings.deviate`."""
+        self.contacts.added = added
+
+    def contact_loads(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> FloatArray:
+        """Loads of the inner and the outer contacts, see `RingElement.contact_loads`."""
+        return self.contacts.loads(displacement, velocity, **self.plain.conditions(operation))
+
     def with_laws(self, laws: Sequence[Law]) -> Self:
         """See `RingElement.with_laws`."""
         return dataclasses.replace(self, contacts=RollerContacts(self.contacts.bearing, *laws))
@@ -193,7 +207,8 @@ class RollerElement(RingElement):
 
             def approaches(sample: int, side: int = side) -> FloatArray:
                 angle = plain.cage_angle(operations[sample])
-                return self.contacts.approaches(displacements[sample], angle)[side]
+                with self.deviating(operations[sample]):
+                    return self.contacts.approaches(displacements[sample], angle)[side]
 
             total += brought_by_speed(law, plain.bearing, conditions, approaches)
         return total

@@ -6,8 +6,9 @@ are at the same point of the system, so that forces and moments balance without 
 
 from __future__ import annotations
 
+import contextlib
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, Protocol
 
@@ -273,11 +274,14 @@ class OnRings(ElementDefaults):
     ----------
     locating : bool
         Whether it holds the ring along the axis, once its clearance is taken up.
+    deviation_data : DeviationData or None
+        Deviations from its form, see `mbs.bearings.deviations`; None of a perfect bearing.
     memory_words : str
         What describes films with memory, and leaves the rest of their response out.
     """
 
     locating: ClassVar[bool] = False
+    deviation_data: Any = None
     memory_words: ClassVar[str] = "springs and dampers of films with memory leave"
 
     if TYPE_CHECKING:  # a property at run time would be the default of the fields of this name
@@ -310,6 +314,34 @@ class OnRings(ElementDefaults):
     def film_source(self) -> str:
         """Source of its films in words; empty where it is that of the law of the system."""
         return ""
+
+    def deviate(self, added: FloatArray | None) -> None:
+        """Add approaches, and their rates, to its contacts until it is told otherwise.
+
+        Parameters
+        ----------
+        added : array (Z, 2, 2) or None
+            Approach [m] and rate [m/s] of the inner and the outer contact of each rolling element.
+        """
+        raise NotImplementedError
+
+    @contextlib.contextmanager
+    def deviating(self, operation: Operation) -> Iterator[None]:
+        """The bearing with its deviations where the system has turned so far.
+
+        Parameters
+        ----------
+        operation : Operation
+            Speed and angle.
+        """
+        if self.deviation_data is None:
+            yield
+            return
+        self.deviate(self.deviation_data.at(operation.angle, operation.speed))
+        try:
+            yield
+        finally:
+            self.deviate(None)
 
     def passed(self, part: float) -> OnRings:
         """The same bearing, its cage further on by a part of the pitch of its rolling elements.

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def read_bearing(section: Table, name: str) -> BearingSpec | LocatingSpec | MatrixSpec | None:
-    """Read a bearing of rollers or balls, or one by matrices with kind = "table"; None where a problem was noted.
+    """Read a bearing, see `_perfect`, with deviations from its form.
 
     Parameters
     ----------
@@ -32,6 +32,18 @@ def read_bearing(section: Table, name: str) -> BearingSpec | LocatingSpec | Matr
     name : str
         Name of the bearing.
     """
+    spec = _perfect(section, name)
+    stated = [key in section for key in ("waviness", "size_difference", "spall")]
+    if not any(stated):
+        return spec
+    from mbs.scene.locating.deviations import read_deviations  # with what few scenes state
+
+    deviating: BearingSpec | LocatingSpec | MatrixSpec | None = read_deviations(section, spec)
+    return deviating
+
+
+def _perfect(section: Table, name: str) -> BearingSpec | LocatingSpec | MatrixSpec | None:
+    """Read a bearing of rollers or balls, or one by matrices with kind = "table"; None where a problem was noted."""
     if section.choice("kind", ("rollers", "table")) == "table":
         return read_table_bearing(section, name)
     stated = section.get("geometry")
@@ -176,6 +188,7 @@ def build_bearing(spec: BearingSpec, surroundings: Surroundings) -> Built:
         centrifugal=spec.centrifugal,
         films="slow" if spec.rollers_as_bodies else films,
         source=surroundings.laws.films(bearing, supply),
+        deviations=spec.deviations,
     )
     if not spec.rollers_as_bodies:
         return Built(plain, plain)

@@ -20,6 +20,7 @@ from mbs.frozen import frozen
 from mbs.model.body import Body, Inertia, rigid_problems
 
 if TYPE_CHECKING:
+    from mbs.bearings.deviations import Deviations
     from mbs.flexible.plan import Attached, ReductionPlan, Turn
     from mbs.flexible.reduced_body import ReducedBody
     from mbs.flexible.shaft_parts import Disc, Section
@@ -234,6 +235,8 @@ class BearingSpec:
         Clearance of a roller in its pocket of the cage [m]; None for rollers that roll without slip.
     between_ribs : TaperedSpec or None
         The same bearing as ribs on both rings hold it, for a shaft that moves along x; None without such ribs.
+    deviations : Deviations or None
+        Deviations from its form, see `mbs.bearings.deviations`.
     of_points : bool
         Whether its contacts are points, see `LocatingSpec`; they are lines.
     """
@@ -254,6 +257,7 @@ class BearingSpec:
     slices_coupled: bool = False
     pocket_clearance: float | None = None
     between_ribs: TaperedSpec | None = None
+    deviations: Deviations | None = None
 
     def __post_init__(self) -> None:
         reach = self.geometry.clearance_range
@@ -284,6 +288,8 @@ class LocatingSpec:
         Angle of the first rolling element from y [rad].
     axial_offset : float
         Way of the inner ring along x against the outer one where both places have not moved [m].
+    deviations : Deviations or None
+        Deviations from its form, see `mbs.bearings.deviations`.
     of_points : bool
         Whether its contacts are points, else lines.
     """
@@ -295,6 +301,7 @@ class LocatingSpec:
     geometry: Any
     start_angle: float = 0.0
     axial_offset: float = 0.0
+    deviations: Deviations | None = None
 
     @property
     def elements(self) -> str:

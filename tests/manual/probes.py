@@ -150,6 +150,8 @@ diametral_clearance = "0 mm"
 [[bearings]]
 name = "NAME"
 bearing = "6208"
+waviness = [{ waves = 2 }, { waves = [2, 3] }]
+spall = [{}]
 [[bearings]]
 name = "TABLE"
 kind = "table"

@@ -201,6 +201,8 @@ inner = "disc"
 outer = "ground"
 geometry = { name = "NU308" }
 profile = { crown_drop = "10 um" }
+spall = [{ on = "inner", length = "1 mm", depth = "5 um" }]
+waviness = [{ on = "inner", waves = 2, amplitude = "1 um" }, { on = "inner", waves = [2, 3], amplitude = "1 um" }]
 [[gears]]
 name = "mesh"
 on = "disc"
@@ -245,11 +247,14 @@ PLACES = {
     "[[flexible]] interfaces PLACE plane": ("flexible", 1, "interfaces", "OTHER", "plane"),
     "[laws.NAME]": ("laws", "own"),
     "profile": ("bearings", 2, "profile"),
+    "[[bearings]] waviness": ("bearings", 2, "waviness", 1),
+    "[[bearings]] spall": ("bearings", 2, "spall", 0),
 }
 """Where tables are in the texts above; all others by their own names, the first one of a list."""
 
 OTHERS = {
     ("[[bearings]]", "expansion"): ("bearings", 1),
+    ("[[bearings]] waviness", "phase"): ("bearings", 2, "waviness", 0),
     ("[[flexible]]", "units"): ("flexible", 1),
     ("[[inputs]]", "quantity"): ("inputs", 1),
     ("[[loads]]", "force"): ("loads", 1),

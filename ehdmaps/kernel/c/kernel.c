@@ -21,6 +21,7 @@
 #include "cylinder/cylinder.h"
 #include "cylinder/cylinder_films.h"
 #include "run/block.h"
+#include "run/deviations.h"
 #include "run/rings.h"
 #include "cylinder/cylinder_block.h"
 
@@ -79,6 +80,7 @@ EHD_SIZE_OF(ehd_taper_answer)
 EHD_SIZE_OF(ehd_pair_springs)
 
 /* runs in time: elements, gears, matrices */
+#include "run/deviations.c"
 #include "run/rings.c"
 #include "cylinder/cylinder_block.c"
 #include "film/film_block.c"

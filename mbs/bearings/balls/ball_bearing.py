@@ -282,7 +282,7 @@ class BallForce(LocatingForce):
 
     def work(self, speeds: tuple[float, float], last: FloatArray) -> float:
         """See `LocatingForce.work`; `last` has centres [m] and forces [N], axial and radial."""
-        return speed_work(self._balls, self._data.shape, last)
+        return speed_work(self._balls, self._data.shape, last, self._data.given("added"))
 
     def stored(self) -> float:
         """See `LocatingForce.stored`."""

@@ -9,6 +9,7 @@ from ehdmaps.kernel.record import Record, numbers
 from mbs.bearings.balls.ball_speed import Drive
 from mbs.bearings.balls.response import SHORTER
 from mbs.bearings.locating.film_memory import rows_of
+from mbs.bearings.locating.locating_force import BY_RATES
 from mbs.bearings.locating.normal_law import LawData
 
 COLUMNS = 26
@@ -72,10 +73,14 @@ class BallData(Record):
         ("held", numbers),
         ("inner", LawData),
         ("outer", LawData),
+        ("added", numbers),
+        ("by_rates", numbers),
     )
     shapes: ClassVar = {
         "cosine": ("balls",),
         "sine": ("balls",),
         "rows": ("balls", 4),
         "held": ("balls", 2, rows_of(len(SHORTER))),
+        "added": ("balls", 2, 2),
+        "by_rates": (BY_RATES,),
     }

@@ -189,10 +189,10 @@ def mean_speed(balls: FloatArray, idle: float) -> float:
 def _work() -> Callable[..., float]:
     """Work of the loads by speed, in C."""
     place = ctypes.c_void_p
-    return function("ehd_ball_speed_work", ctypes.c_int64, place, place, place, result=ctypes.c_double)
+    return function("ehd_ball_speed_work", ctypes.c_int64, *4 * (place,), result=ctypes.c_double)
 
 
-def speed_work(balls: FloatArray, shape: ctypes.Structure, last: FloatArray) -> float:
+def speed_work(balls: FloatArray, shape: ctypes.Structure, last: FloatArray, added: FloatArray | None = None) -> float:
     """Work of the centrifugal loads and tractions on the balls since the last call [J], by the trapezoidal rule.
 
     Parameters
@@ -203,8 +203,11 @@ def speed_work(balls: FloatArray, shape: ctypes.Structure, last: FloatArray) -> 
         Lengths of the bearing, in C.
     last : array (Z, LAST)
         Centres from both grooves [m] and forces [N] of the last call, axial and radial; written.
+    added : array (Z, 2, 2), optional
+        What deviations add to the contacts, see `mbs.bearings.deviations`.
     """
-    return _work()(balls.shape[0], balls.ctypes.data, ctypes.addressof(shape), last.ctypes.data)
+    more = None if added is None else added.ctypes.data
+    return _work()(balls.shape[0], balls.ctypes.data, ctypes.addressof(shape), more, last.ctypes.data)
 
 
 def inner_share(drive: Drive, loads: Any) -> tuple[Any, Any]:

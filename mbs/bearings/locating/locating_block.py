@@ -16,6 +16,7 @@ import numpy as np
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.kernel.library import checked
 from ehdmaps.kernel.record import Record, integers, numbers, room
+from mbs.bearings.deviations import gathered
 from mbs.bearings.locating.film_memory import FilmsInTime, no_memory, rows_of
 from mbs.bearings.locating.film_tables import FilmCourse, FilmData
 from mbs.bearings.locating.locating_element import LocatingElement, LocatingStates
@@ -50,6 +51,8 @@ class PairBlock(Record):
         Times at the end of the last step that was made, and of the step for which films hold [s].
     films : FilmData
         Laws of the contacts, and places of the steps on their tables.
+    deviations : address or None
+        Deviations of each bearing from its form, see `mbs.bearings.deviations`.
     """
 
     _fields_ = (
@@ -59,6 +62,7 @@ class PairBlock(Record):
         ("memories", integers),
         *((name, numbers) for name in ("memory", "clock")),
         ("films", ctypes.POINTER(FilmData)),
+        ("deviations", ctypes.c_void_p),
     )
     shapes: ClassVar = {
         **dict.fromkeys(("firsts", "places", "films_of", "counts", "slices", "memories"), ("count",)),
@@ -121,7 +125,9 @@ class LocatingBlock:
             "memory": np.zeros(sum(memory)),
         }
         self.arrays |= self.own()
-        self.data = checked(self.record, self.name)(**lengths, films=self.course.data, **self.arrays)
+        self._deviate, deviations = gathered([one.deviation_data for one in self.elements])
+        given = {"films": self.course.data, "deviations": deviations}
+        self.data = checked(self.record, self.name)(**lengths, **given, **self.arrays)
 
     def own(self) -> dict[str, Any]:
         """Fields of the kind, by name; what is left out of the arrays is zero."""

@@ -27,6 +27,7 @@ from mbs.model.relaxation import Films, Relaxation
 
 if TYPE_CHECKING:
     from mbs.bearings.contact_report import BearingContacts, RollingLoss
+    from mbs.bearings.deviations import DeviationData, Deviations
     from mbs.model.condensed import Condensed
 
 HARMONICS = 3
@@ -85,6 +86,8 @@ class LocatingElement(OnRings):
         share them.
     memory : {"slow", "memory"}
         Whether films have stiffness and damping of slow motion, or relax; "memory" in time, too.
+    deviations : Deviations or None
+        Deviations from its form, which excite runs in time.
     """
 
     locating: ClassVar[bool] = True
@@ -98,6 +101,7 @@ class LocatingElement(OnRings):
     axial_offset: float = 0.0
     films: Callable[[float, float], Any] | None = None
     memory: Films = "slow"
+    deviations: Deviations | None = None
     _made: OrderedDict[float, Any] = field(default_factory=OrderedDict, init=False, repr=False)
 
     @property
@@ -172,6 +176,25 @@ class LocatingElement(OnRings):
     def cage_turn(self) -> float:
         """Speed of the cage as a multiple of the system's, by the nominal contact angle."""
         return float(self.force.geometry.cage_speed(self.inner_spin, self.outer_spin))
+
+    def deviate(self, added: FloatArray | None) -> None:
+        """See `OnRings.deviate`; of the force at the speed of the last call."""
+        for force in (self.force, *self._made.values()):
+            force.deviate(added)
+
+    @cached_property
+    def deviation_data(self) -> DeviationData | None:
+        """Tables of its deviations; None without any."""
+        if self.deviations is None:
+            return None
+        from mbs.bearings.deviations import Turns, deviation_data  # with what few scenes state
+
+        geometry, places = self.force.geometry, self.force.angles
+        turns = Turns.of(geometry, self.inner_spin, self.outer_spin)
+        each = np.arange(places.size)
+        if any(getattr(geometry, "others", ())):  # balls with four contacts stand there twice
+            each %= geometry.balls
+        return deviation_data(self.deviations, geometry, turns, self.start_angle, places, each)
 
     @property
     def entrainment_rate(self) -> float:
@@ -294,22 +317,29 @@ class LocatingElement(OnRings):
         most = force.shape.most_travel, force.shape.most_tilt
         check_apart(self.name, pose, most, operation.time, beyond=force.beyond(pose))
         films, step = None if states is None else states.films, 0.0 if states is None else operation.time - states.time
+        last = np.zeros((force.angles.size, LAST)) if states is None else states.last.copy()
         force.held = None if films is None else films.held(step, force.shorter)
         try:
-            answer = self.evaluate(displacement, velocity, operation)
+            with self.deviating(operation):
+                answer = self.evaluate(displacement, velocity, operation)
+                work = force.work((conditions["inner_speed"], conditions["outer_speed"]), last)
         finally:
             force.held = None
-        last = np.zeros((force.angles.size, LAST)) if states is None else states.last.copy()
-        work = force.work((conditions["inner_speed"], conditions["outer_speed"]), last)
         if self.relaxes:
             films = FilmsInTime.at_rest(force) if films is None else films.after(step, force)
         slowed = answer.damping @ velocity
         turning = turned_by(pose, answer.force + slowed) * self.cage_turn * operation.speed
+        dissipated, brought = float(velocity @ slowed), 0.0
+        if self.deviation_data is not None:
+            by, (own, at_rest) = force.by_rates[:6], force.by_rates[6:].tolist()
+            taken = -float(velocity @ by)
+            answer.force[:] += by
+            dissipated, brought = dissipated + 2.0 * taken + own, at_rest + taken + own
         return answer, LocatingStates(
             time=operation.time,
             last=last,
-            dissipated=float(velocity @ slowed),
-            driven=turning + (work / step if step > 0.0 else 0.0),
+            dissipated=dissipated,
+            driven=turning + brought + (work / step if step > 0.0 else 0.0),
             stored=force.stored(),
             films=films,
         )

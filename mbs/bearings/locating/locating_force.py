@@ -28,6 +28,10 @@ if TYPE_CHECKING:
 LAST = 8
 """Numbers that `LocatingForce.work` keeps of a rolling element: places, and then the loads on them."""
 
+BY_RATES = 8
+"""Numbers of the effect that rates of deviations have, `EHD_PAIR_BY_RATES`: force on the inner ring (6,) [N], [N m];
+what dampers dissipate by them alone, and the power of the loads at rest [W]."""
+
 FASTEST = 2e4
 """Largest accepted speed of a ring [rad/s]; 1e5 rpm is half of it."""
 
@@ -176,6 +180,7 @@ class LocatingForce:
     angles: FloatArray
     film_loads: tuple[float, float]
     held: Any
+    _data: Any
 
     def __call__(
         self,
@@ -287,6 +292,24 @@ class LocatingForce:
     def contacts(self) -> tuple[int, int, int]:
         """Contacts of all elements: Z, 2, and slices of each."""
         return self.angles.size, 2, self.slices
+
+    def deviate(self, added: FloatArray | None) -> None:
+        """Add approaches to the elements, see `mbs.model.elements.OnRings.deviate`; `by_rates` has what rates do.
+
+        Parameters
+        ----------
+        added : array (Z, 2, 2) or None
+            Approaches and rates of both contacts.
+        """
+        self._data.put(added=added)
+        if added is not None:
+            self._data.put(by_rates=np.zeros(BY_RATES))
+
+    @property
+    def by_rates(self) -> FloatArray:
+        """Effect of the rates of deviations at the last call that had some, `BY_RATES` numbers."""
+        found: FloatArray = self._data.given("by_rates")
+        return found
 
     def go_on(self, memory: FloatArray) -> None:
         """Bring films with memory to the end of a step, at which the last call was.

@@ -12,12 +12,13 @@ import numpy as np
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.kernel.library import checked, function
 from ehdmaps.kernel.record import Record, numbers
+from mbs.bearings.locating.locating_force import BY_RATES
 from mbs.bearings.locating.normal_law import LawData, NormalLaw
 
 RIB_NUMBERS = 6
 """Numbers of a rib, see `rib_rows`."""
 
-PLACE, RING, FIRST_RIB, FIRST_SHARE, COLUMNS = slice(9, 12), slice(12, 15), 15, 19, 49
+PLACE, RING, FIRST_RIB, FIRST_SHARE, ADDED, COLUMNS = slice(9, 12), slice(12, 15), 15, 19, slice(49, 51), 51
 """Places of numbers that are kept of a roller, and how many there are: `ehd_taper_roller` in taper.h."""
 
 ANSWER = 78
@@ -98,6 +99,8 @@ class TaperedData(Record):
         ("profile", numbers),
         ("cosine", numbers),
         ("sine", numbers),
+        ("added", numbers),
+        ("by_rates", numbers),
     ]
     shapes: ClassVar = {
         "rib": ("ribs", RIB_NUMBERS),
@@ -105,6 +108,8 @@ class TaperedData(Record):
         "profile": ("slices",),
         "cosine": ("rollers",),
         "sine": ("rollers",),
+        "added": ("rollers", 2, 2),
+        "by_rates": (BY_RATES,),
     }
 
 

@@ -47,6 +47,7 @@ from mbs.bearings.locating.film_memory import rows_of, springs_of
 from mbs.bearings.locating.locating_force import Loads, LocatingForce, directions, later
 from mbs.bearings.locating.normal_law import LawData, NormalLaw, contacts_at, law_data
 from mbs.bearings.tapered.kernel_structs import (
+    ADDED,
     ANSWER,
     COLUMNS,
     FIRST_RIB,
@@ -266,7 +267,7 @@ class TaperedForce(LocatingForce):
         place, ring = rows[PLACE], rows[RING]
         slices = np.zeros((2, angle.size, self.positions.size))
         for side, (normal, moved) in enumerate(((shape.cone, ring - place), (shape.cup, place))):
-            approach = normal[0] * moved[0] + normal[1] * moved[1]
+            approach = normal[0] * moved[0] + normal[1] * moved[1] + rows[ADDED][side]
             depth = approach[:, None] + moved[2][:, None] * shape.levers - shape.profile
             law = self.films.sides[side]
             dry = law.coefficient * np.maximum(depth, 0.0) ** (10.0 / 9.0)
@@ -352,8 +353,8 @@ def dry_energy(line: NormalLaw, shape: TaperedShape, rollers: FloatArray) -> flo
     count = shape.ribs.laws.size
     ribs = rollers[:, FIRST_RIB : FIRST_RIB + count]
     total = 0.4 * float(np.sum(ribs ** (5.0 / 3.0) * shape.ribs.laws ** (-2.0 / 3.0)))
-    for normal, moved in ((shape.cup, place), (shape.cone, ring - place)):
-        approach = moved[:, :2] @ np.array(normal)
+    for side, (normal, moved) in enumerate(((shape.cone, ring - place), (shape.cup, place))):
+        approach = moved[:, :2] @ np.array(normal) + rollers[:, ADDED][:, side]
         depth = approach[:, None] + moved[:, 2:] * shape.levers - shape.profile
         total += 9.0 / 19.0 * line.coefficient / shape.levers.size * float(np.sum(depth.clip(min=0.0) ** (19.0 / 9.0)))
     return total

@@ -195,5 +195,6 @@ def build_located(spec: LocatingSpec, surroundings: Surroundings) -> Built:
         axial_offset=spec.axial_offset,
         films=kind.films(spec, surroundings) if has_films else None,
         memory=laws.memory if has_films else "slow",
+        deviations=spec.deviations,
     )
     return Built(element, element)

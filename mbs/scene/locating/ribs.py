@@ -53,10 +53,10 @@ def read_ribs(section: Table, spec: BearingSpec) -> BearingSpec:
         mirrored_ribs(geometry) if mirrored else geometry,
         spec.start_angle,
         offset,
-        spec.profile,
-        spec.slices,
-        tuple(key for key in _WITHOUT if key in section),
-        tuple(given),
+        profile=spec.profile,
+        slices=spec.slices,
+        without=tuple(key for key in _WITHOUT if key in section),
+        given=tuple(given),
     )
     return dataclasses.replace(spec, between_ribs=held)
 

@@ -41,6 +41,9 @@ typedef struct ball_given {
     const ehd_pair_law *inner, *outer;
     double inner_scale, inner_step, outer_scale, outer_step; /* one over those of the laws */
     const double *held_inner, *held_outer;     /* three numbers each of contacts with memory, or null */
+    const double *added;                       /* what deviations add to both contacts, (2, 2), or null */
+    double *by_rates;                          /* (4,): force of the inner ring by the rates of that; the last two of
+                                                * EHD_PAIR_BY_RATES; written */
 } ball_given;
 
 /* Forces on a ball at a place, and what they come from. */
@@ -368,6 +371,18 @@ static void ball_inner_slopes(const ball_given *of, const ball_state *s, double 
     by_v[3] = by_both[3] - gr * ar - ur * i * s->ir;
 }
 
+/* What rates of deviations do: ball and dampers follow to first order, with v' = M^-1 (k_i e_i r_i - k_o e_o r_o) of the
+ * ball. on_inner and on_outer: how forces of the dampers along the contacts come to the ring. The traction keeps its loads. */
+static void ball_by_rates(const ball_given *of, const ball_state *s, double ci, double co, const double inverse[4],
+                          const double on_inner[2], const double on_outer[2]) {
+    const double inner = of->added[1], outer = of->added[3], *n = inverse;
+    const double px = s->ki * inner * s->ix - s->ko * outer * s->ox, pr = s->ki * inner * s->ir - s->ko * outer * s->orr;
+    const double vx = n[0] * px + n[1] * pr, vr = n[2] * px + n[3] * pr;
+    const double at_i = inner - (s->ix * vx + s->ir * vr), at_o = outer + (s->ox * vx + s->orr * vr);
+    for (int i = 0; i < 2; i++) of->by_rates[i] = ci * at_i * on_inner[i] + co * at_o * on_outer[i];
+    of->by_rates[2] = ci * at_i * at_i + co * at_o * at_o;
+}
+
 /* Force, stiffness and damping of a ball in balance, and where it begins the next time. */
 EHD_INLINE void ball_answer(const ball_given *of, const ball_state *s, ehd_ball_start *start, ehd_ball_found *out) {
     const double qi = s->qi, ki = s->ki, ix = s->ix, ir = s->ir, ox = s->ox, orr = s->orr, ti = qi / s->distance;
@@ -400,6 +415,7 @@ EHD_INLINE void ball_answer(const ball_given *of, const ball_state *s, ehd_ball_
     out->centrifugal = s->centrifugal;
     out->traction = (1.0 - s->share) * s->traction;
     out->inner_traction = inner_traction;
+    if (of->added) of->by_rates[3] = qi * of->added[1] + s->qo * of->added[3];
     if (qi <= 0.0 || determinant == 0.0) {
         for (int i = 0; i < 4; i++) out->stiffness[i] = out->damping[i] = 0.0;
         return;
@@ -432,6 +448,8 @@ EHD_INLINE void ball_answer(const ball_given *of, const ball_state *s, ehd_ball_
     const double vx = ix - (p00 * ix + p01 * ir), vr = ir - (p10 * ix + p11 * ir);
     const double wx = ox * s00 + orr * s10, wr = ox * s01 + orr * s11;
     const double yx = p00 * ox + p01 * orr, yr = p10 * ox + p11 * orr;
+    if (of->added)
+        ball_by_rates(of, s, ci, co, (double[4]){n00, n01, n10, n11}, (double[2]){vx, vr}, (double[2]){yx, yr});
     out->damping[0] = ci * vx * ux + co * yx * wx;
     out->damping[1] = ci * vx * ur + co * yx * wr;
     out->damping[2] = ci * vr * ux + co * yr * wx;

@@ -69,6 +69,19 @@ static const double *ball_groove(const ehd_ball_data *of, int64_t j, const doubl
     return row;
 }
 
+/* Add what rates of deviations of a ball do to those of the bearing, EHD_PAIR_BY_RATES; see ehd_ball_force. */
+static void ball_add_rates(const double own[4], double way, double y, double z, double c, double s, double place,
+                           double *out) {
+    const double along = way * own[0];
+    out[0] -= along;
+    out[1] -= c * own[1];
+    out[2] -= s * own[1];
+    out[4] -= y * along - place * s * own[1];
+    out[5] -= z * along + place * c * own[1];
+    out[EHD_PAIR_OWN] += own[2];
+    out[EHD_PAIR_AT_REST] += own[3];
+}
+
 #define BALL_PRESSED 1e-6 /* overlap of grooves from which a ball is pressed by them [m] */
 
 /* Whether a ball between two grooves at d is pressed: 0 to 1. */
@@ -99,11 +112,13 @@ int ehd_ball_force(const ehd_ball_data *of, const double *pose, ehd_ball_start *
     const double share = dry && still ? ball_share(&of->inner, &of->outer) : -1.0;
     ball_given on = {0.0, 0.0, of->shape.inner_arm, of->shape.outer_arm, of->rest, of->drive, &of->inner, &of->outer,
                      1.0 / of->inner.scale, 1.0 / of->inner.step, 1.0 / of->outer.scale, 1.0 / of->outer.step,
-                     NULL, NULL};
+                     NULL, NULL, NULL, NULL};
+    double by_rates[4];
     int loaded = 0;
     memset(force, 0, 6 * sizeof *force);
     memset(stiffness, 0, 36 * sizeof *stiffness);
     memset(damping, 0, 36 * sizeof *damping);
+    if (of->added) memset(of->by_rates, 0, EHD_PAIR_BY_RATES * sizeof *of->by_rates);
     for (int64_t j = 0; j < of->balls; j++) {
         const double c = turn_c * of->cosine[j] - turn_s * of->sine[j];
         const double s = turn_s * of->cosine[j] + turn_c * of->sine[j];
@@ -120,7 +135,14 @@ int ehd_ball_force(const ehd_ball_data *of, const double *pose, ehd_ball_start *
             on.held_inner = of->held + 2 * EHD_BALL_MEMORY * j;
             on.held_outer = of->held + (2 * j + 1) * EHD_BALL_MEMORY;
         }
+        if (of->added) {
+            on.added = of->added + 4 * j;
+            on.inner_arm = of->shape.inner_arm - on.added[0];
+            on.outer_arm = of->shape.outer_arm - on.added[2];
+            on.by_rates = memset(by_rates, 0, sizeof by_rates);
+        }
         if (!ball_place(&on, share, &start[j], ball)) return EHD_BALL_NO_BALANCE;
+        if (of->added) ball_add_rates(by_rates, way, arm * s, -arm * c, c, s, place, of->by_rates);
         if (ball->load[0] <= 0.0) continue;
         const double y = arm * s, z = -arm * c, along = way * ball->force[0];
         loaded++;

@@ -59,10 +59,14 @@ static int ball_on_ring(const ehd_ball_block *of, int64_t b, const ehd_moment *a
     data.cosine = of->cosine + row;
     data.sine = of->sine + row;
     data.held = pair_memory_of(&of->all, b);
+    double by_rates[EHD_PAIR_BY_RATES];
+    data.added = deviations_of(of->all.deviations, b, at);
+    data.by_rates = data.added ? by_rates : NULL;
     const int found =
         ehd_ball_force_surely(&data, pose, of->centres + row, of->rows + row, force, stiffness, damping);
     if (found >= 0)
-        pair_answer_port(first, of->all.turns[b], at, motion, pose, force, stiffness, damping, answers, of->all.powers + 2 * b);
+        pair_answer_port(first, of->all.turns[b], at, motion, pose, force, stiffness, damping, data.by_rates, answers,
+                         of->all.powers + 2 * b);
     return found;
 }
 
@@ -101,14 +105,16 @@ void ehd_ball_block_accept(void *data, const ehd_moment *at) {
     pair_made(&of->all, at);
 }
 
-/* Work of the centrifugal loads and tractions on balls since the last call [J], by the trapezoidal rule; last (balls, 8):
- * centres v, -(d - v) [m], and the forces then on each [N], written. Traction at the inner raceway is a force on the ring,
+/* Work of the centrifugal loads and tractions on balls since the last call [J], by the trapezoidal rule; added: of
+ * ehd_ball_data; last (balls, 8): centres v, -(d - v) [m], and the forces then on each [N], written. Traction at the inner raceway is a force on the ring,
  * too, whose work is counted there: what is left of it goes with d - v. */
-double ehd_ball_speed_work(int64_t balls, const ehd_ball_found *found, const ehd_ball_shape *shape, double *last) {
+double ehd_ball_speed_work(int64_t balls, const ehd_ball_found *found, const ehd_ball_shape *shape, const double *added,
+                           double *last) {
     double work = 0.0;
     for (int64_t j = 0; j < balls; j++, last += 8) {
         const ehd_ball_found *of = &found[j];
-        const double reach = shape->outer_arm + of->approach[1], back = -(shape->inner_arm + of->approach[0]);
+        const double inner = added ? added[4 * j] : 0.0, outer = added ? added[4 * j + 2] : 0.0;
+        const double reach = shape->outer_arm + of->approach[1] - outer, back = -(shape->inner_arm + of->approach[0] - inner);
         const double now[8] = {reach * of->outer[0],
                                reach * of->outer[1],
                                back * of->inner[0],
@@ -132,7 +138,8 @@ void ehd_ball_block_powers(void *data, const ehd_moment *at, const double *motio
         const int64_t row = b * of->all.longest;
         const double step = at->time - of->all.times[b];
         const double work =
-            ehd_ball_speed_work(of->all.counts[b], of->rows + row, of->lengths + b, of->all.last + 8 * row);
+            ehd_ball_speed_work(of->all.counts[b], of->rows + row, of->lengths + b,
+                                deviations_of(of->all.deviations, b, at), of->all.last + 8 * row);
         of->all.times[b] = at->time;
         of->all.works[b] = step > 0.0 ? work / step : 0.0;
         out[3 * of->all.places[b]] = of->all.powers[2 * b];

@@ -83,6 +83,11 @@ static roller roller_of(const ehd_cylinder *bearing, const ehd_ring_motion *m, i
     r.tilt = m->theta_z * r.cosine - m->theta_y * r.sine;
     r.rate = m->y_rate * r.cosine + m->z_rate * r.sine;
     r.tilt_rate = m->theta_z_rate * r.cosine - m->theta_y_rate * r.sine;
+    if (bearing->added) {
+        const double *added = bearing->added + 4 * j;
+        r.gap += added[0] + added[2];
+        r.rate += added[1] + added[3];
+    }
     r.deepest = r.gap + (bearing->half_length * fabs(r.tilt) - bearing->least_profile);
     return r;
 }

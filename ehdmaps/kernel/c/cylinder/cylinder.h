@@ -24,6 +24,8 @@ typedef struct ehd_cylinder {
     const double *position, *profile;           /* (slices + 1): places along the roller; twice the profile there [m] */
     const double *cosine, *sine;                /* (rollers): directions of the rollers in the cage */
     const double *weight;                       /* (slices): how many each stands for; null where rings tilt */
+    const double *added;                        /* (rollers, 2, 2): approach and rate that deviations from its form add to
+                                                 * both contacts, see ../run/deviations.h; null without any */
 } ehd_cylinder;
 
 /* Motion of the inner ring against the outer one, as far as rollers feel it, and where the cage stands. */

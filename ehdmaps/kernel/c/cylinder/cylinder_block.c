@@ -10,7 +10,7 @@ typedef struct block_rollers {
     const ehd_cylinder_law *law;
 } block_rollers;
 
-static block_rollers rollers_of_block(const ehd_cylinder_block *block, int64_t b, int64_t side) {
+static block_rollers rollers_of_block(const ehd_cylinder_block *block, int64_t b, int64_t side, const ehd_moment *at) {
     const ehd_rings *rings = &block->rings;
     const double *sizes = ring_sizes(rings, b), *profile = block->profiles + b * rings->most_slices;
     const int64_t slices = rings->slices[b], row = b * rings->sides + side;
@@ -23,7 +23,8 @@ static block_rollers rollers_of_block(const ehd_cylinder_block *block, int64_t b
         {rings->rollers[b], slices, 0, sizes[RING_HALF_CLEARANCE], sizes[RING_SLICE_LENGTH], sizes[RING_MOST_TRAVEL],
          sizes[RING_MOST_TILT], sizes[RING_HALF_LENGTH], lowest, highest, rings->positions + b * rings->most_slices,
          profile, rings->cosine + b * rings->most_rollers, rings->sine + b * rings->most_rollers,
-         rings->felt[b] == RING_LEVEL ? rings->weights + b * rings->most_slices : NULL},
+         rings->felt[b] == RING_LEVEL ? rings->weights + b * rings->most_slices : NULL,
+         deviations_of(rings->deviations, b, at)},
         {block->states + row * block->room, block->place, block->row, 4 * slices, 0},
         &block->laws[rings->films_of[row]].law,
     };
@@ -85,7 +86,7 @@ void ehd_course_law_blend(ehd_course_law *law, int64_t node, double weight) {
 static int answer_massless(const ehd_cylinder_block *block, int64_t b, const ehd_moment *at, const double *motion,
                            ehd_answers *answers) {
     const ehd_rings *rings = &block->rings;
-    const block_rollers rollers = rollers_of_block(block, b, 0);
+    const block_rollers rollers = rollers_of_block(block, b, 0, at);
     const ehd_ring_motion ring = block_motion(rings, b, at, motion, answers->m);
     const int64_t first = rings->firsts[b], felt = rings->felt[b];
     ehd_bearing_force found;
@@ -99,6 +100,14 @@ static int answer_massless(const ehd_cylinder_block *block, int64_t b, const ehd
         for (int64_t n = 0; n < felt; n++) slopes[n] = at->by_q * k[LOADED[n]] + at->by_v * c[LOADED[n]];
     }
     return status;
+}
+
+/* Add deviations to where the contacts of a roller that is a body stand, and to how they move. */
+static void deviate(const double *added, int64_t j, ring_roller *placed, ring_roller *moving) {
+    for (int side = 0; added && side < 2; side++) {
+        placed->approach[side] += added[4 * j + 2 * side];
+        moving->approach[side] += added[4 * j + 2 * side + 1];
+    }
 }
 
 /* A contact of a roller that is a body, as a roller by itself; placed and moving: what approaches and grows in it, and the
@@ -121,14 +130,15 @@ static int check_contact(const ehd_cylinder *shape, const roller *r) {
 static int answer_bodies(const ehd_cylinder_block *block, int64_t b, const ehd_moment *at, const double *motion,
                          ehd_answers *answers) {
     const ehd_rings *rings = &block->rings;
-    const block_rollers sides[2] = {rollers_of_block(block, b, 0), rollers_of_block(block, b, 1)};
+    const block_rollers sides[2] = {rollers_of_block(block, b, 0, at), rollers_of_block(block, b, 1, at)};
     int status = EHD_OK;
     double cage[2];
     ring_cage(rings, b, at->angle, cage);
     begin_bodies(rings, b, at, answers);
     for (int64_t j = 0; j < rings->rollers[b]; j++) {
-        const ring_roller placed = body_roller(rings, b, j, cage, motion);
-        const ring_roller moving = body_motion(rings, b, j, cage, motion + answers->m);
+        ring_roller placed = body_roller(rings, b, j, cage, motion);
+        ring_roller moving = body_motion(rings, b, j, cage, motion + answers->m);
+        deviate(sides[0].shape.added, j, &placed, &moving);
         for (int side = 0; side < 2; side++) {
             const ehd_cylinder *shape = &sides[side].shape;
             const ehd_cylinder_law *law = sides[side].law;
@@ -172,9 +182,9 @@ int ehd_cylinder_block_answer(void *data, const ehd_moment *at, const double *mo
     return EHD_FOUND;
 }
 
-/* Power that a roller dissipates, its load at rest, and that load times its places; for each length of a slice. */
-static void roller_power(const ehd_cylinder *bearing, const roller *r, const slices *s, double out[3]) {
-    out[0] = out[1] = out[2] = 0.0;
+/* Power that a roller dissipates, its load at rest, that load times its places, and its load; for each length of a slice. */
+static void roller_power(const ehd_cylinder *bearing, const roller *r, const slices *s, double out[4]) {
+    out[0] = out[1] = out[2] = out[3] = 0.0;
     for (int64_t i = 0; i < s->count; i++) {
         const double weight = bearing->weight ? bearing->weight[i] : 1.0, x = bearing->position[i];
         const double w = s->value[i][0], rate = r->rate + x * r->tilt_rate, part = s->value[i][1] * rate;
@@ -183,50 +193,54 @@ static void roller_power(const ehd_cylinder *bearing, const roller *r, const sli
         out[0] += weight * more * rate;
         out[1] += weight * w;
         out[2] += weight * w * x;
+        out[3] += weight * (w + more);
     }
 }
 
-/* Power that the contacts of a bearing with massless rollers dissipate, and the moment that it asks of its cage, for each
- * length of a slice: turning the cage by dphi moves the loads at rest by y' = -y sin + z cos in the approach; that work is
- * stored. */
+/* Power that the contacts of a bearing with massless rollers dissipate, the moment that it asks of its cage, and the power
+ * that deviations bring in, for each length of a slice: turning the cage by dphi moves the loads at rest by
+ * y' = -y sin + z cos in the approach; that work is stored. */
 static void massless_powers(const ehd_cylinder_block *block, int64_t b, const ehd_moment *at, const double *motion,
-                            int64_t m, double out[2]) {
-    const block_rollers rollers = rollers_of_block(block, b, 0);
+                            int64_t m, double out[3]) {
+    const block_rollers rollers = rollers_of_block(block, b, 0, at);
     const ehd_ring_motion ring = block_motion(&block->rings, b, at, motion, m);
     for (int64_t j = 0; j < block->rings.rollers[b]; j++) {
         const roller r = roller_of(&rollers.shape, &ring, j);
         const slices s = roller_slices(&rollers.shape, &rollers.work, j);
-        double power[3];
+        double power[4];
         if (r.deepest <= rollers.law->numbers->lift_off) continue;
         roller_power(&rollers.shape, &r, &s, power);
         out[0] += power[0];
         out[1] += power[1] * (ring.z * r.cosine - ring.y * r.sine) -
                   power[2] * (ring.theta_z * r.sine + ring.theta_y * r.cosine);
+        if (rollers.shape.added) out[2] += power[3] * (rollers.shape.added[4 * j + 1] + rollers.shape.added[4 * j + 3]);
     }
 }
 
 /* The same of one whose rollers are bodies. */
 static void body_powers(const ehd_cylinder_block *block, int64_t b, const ehd_moment *at, const double *motion,
-                        int64_t m, double out[2]) {
+                        int64_t m, double out[3]) {
     const ehd_rings *rings = &block->rings;
-    const block_rollers sides[2] = {rollers_of_block(block, b, 0), rollers_of_block(block, b, 1)};
+    const block_rollers sides[2] = {rollers_of_block(block, b, 0, at), rollers_of_block(block, b, 1, at)};
     const double *x = motion + rings->firsts[b];
     double cage[2];
     ring_cage(rings, b, at->angle, cage);
     for (int64_t j = 0; j < rings->rollers[b]; j++) {
-        const ring_roller placed = body_roller(rings, b, j, cage, motion);
-        const ring_roller moving = body_motion(rings, b, j, cage, motion + m);
-        const double c = placed.cosine, s = placed.sine;
+        ring_roller placed = body_roller(rings, b, j, cage, motion);
+        ring_roller moving = body_motion(rings, b, j, cage, motion + m);
+        const double c = placed.cosine, s = placed.sine, *added = sides[0].shape.added;
+        deviate(added, j, &placed, &moving);
         for (int side = 0; side < 2; side++) {
             const ehd_cylinder *shape = &sides[side].shape;
             const roller r = contact_roller(shape, &placed, &moving, side);
             const slices found = roller_slices(shape, &sides[side].work, j);
             const double across = x[2 * side + 1] * c - x[2 * side] * s;
-            double power[3];
+            double power[4];
             if (r.deepest <= sides[side].law->numbers->lift_off) continue;
             roller_power(shape, &r, &found, power);
             out[0] += power[0];
             out[1] += (side == 0 ? across : -across) * power[1] - 0.5 * (x[5] * s + x[4] * c) * power[2];
+            if (added) out[2] += power[3] * added[4 * j + 2 * side + 1];
         }
     }
 }
@@ -238,13 +252,14 @@ void ehd_cylinder_block_powers(void *data, const ehd_moment *at, const double *m
     const int64_t m = answers->m;
     for (int64_t b = 0; b < rings->count; b++) {
         const double length = ring_sizes(rings, b)[RING_SLICE_LENGTH];
-        double found[2] = {0.0, 0.0}, *row = out + 3 * rings->places[b];
+        double found[3] = {0.0, 0.0, 0.0}, *row = out + 3 * rings->places[b];
         if (rings->sides == 1)
             massless_powers(block, b, at, motion, m, found);
         else
             body_powers(block, b, at, motion, m, found);
         row[0] = found[0] * length;
-        row[1] = found[1] * length * rings->cage_rates[b] * at->speed + ring_outward_power(rings, b, at, motion, m);
+        row[1] = found[1] * length * rings->cage_rates[b] * at->speed + ring_outward_power(rings, b, at, motion, m) +
+                 found[2] * length;
     }
 }
 

@@ -109,11 +109,13 @@ static int films_on_rings(ehd_film_block *block, int64_t b, const ehd_moment *at
     const ehd_rings *rings = &block->rings;
     const double *felt = motion + rings->firsts[b];
     const double *x = rings->positions + b * rings->most_slices, *profile = rings->profiles + b * rings->most_slices;
+    const double *added = deviations_of(rings->deviations, b, at);
     double cage[2];
     ring_cage(rings, b, at->angle, cage);
     if (!ring_within(rings, b, felt, felt + answers->m, cage)) return -1;
     for (int64_t j = 0; j < rings->rollers[b]; j++) {
-        const ring_roller roller = massless_roller(rings, b, j, cage, felt);
+        ring_roller roller = massless_roller(rings, b, j, cage, felt);
+        if (added) roller.approach[0] += added[4 * j] + added[4 * j + 2];
         double *row = block->approaches + j * rings->slices[b];
         for (int64_t i = 0; i < rings->slices[b]; i++) row[i] = roller.approach[0] + x[i] * roller.tilt - profile[i];
     }
@@ -132,13 +134,15 @@ static int films_on_bodies(ehd_film_block *block, int64_t b, const ehd_moment *a
                            ehd_answers *answers) {
     const ehd_rings *rings = &block->rings;
     const double *x = rings->positions + b * rings->most_slices, *profile = rings->profiles + b * rings->most_slices;
+    const double *added = deviations_of(rings->deviations, b, at);
     double cage[2];
     int above = 0;
     ring_cage(rings, b, at->angle, cage);
     begin_bodies(rings, b, at, answers);
     for (int64_t side = 0; side < 2; side++) {
         for (int64_t j = 0; j < rings->rollers[b]; j++) {
-            const ring_roller roller = body_roller(rings, b, j, cage, motion);
+            ring_roller roller = body_roller(rings, b, j, cage, motion);
+            if (added) roller.approach[side] += added[4 * j + 2 * side];
             double *row = block->approaches + j * rings->slices[b];
             if (!roller_within(&roller, ring_sizes(rings, b))) return -1;
             for (int64_t i = 0; i < rings->slices[b]; i++)
@@ -194,6 +198,18 @@ void ehd_film_block_accept(void *data, const ehd_moment *at) {
     clock[CLOCK_STEPS] += 1.0;
 }
 
+/* Power that deviations bring into the films of a bearing by the loads of the last answer [W]. */
+static double power_of_deviations(const ehd_film_block *block, int64_t b, const ehd_moment *at) {
+    const double *added = deviations_of(block->rings.deviations, b, at);
+    double total = 0.0;
+    for (int64_t side = 0; added && side < block->rings.sides; side++)
+        for (int64_t j = 0; j < block->rings.rollers[b]; j++) {
+            const double *own = added + 4 * j, rate = block->rings.sides == 1 ? own[1] + own[3] : own[2 * side + 1];
+            total += film_contact(block, b, side, j, at).load * rate;
+        }
+    return total;
+}
+
 void ehd_film_block_powers(void *data, const ehd_moment *at, const double *motion, const ehd_answers *answers,
                            double *out) {
     const ehd_film_block *block = data;
@@ -202,7 +218,7 @@ void ehd_film_block_powers(void *data, const ehd_moment *at, const double *motio
         double *row = out + 3 * rings->places[b];
         row[0] = 0.0;
         row[1] = ring_turned_by(rings, b, motion, answers) * rings->cage_rates[b] * at->speed +
-                 ring_outward_power(rings, b, at, motion, answers->m);
+                 ring_outward_power(rings, b, at, motion, answers->m) + power_of_deviations(block, b, at);
         row[2] = block->spent[b];
     }
 }

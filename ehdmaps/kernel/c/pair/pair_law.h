@@ -13,6 +13,11 @@ enum {
     EHD_PAIR_OUTSIDE_SPEED = 2 /* slower or faster than films were made for: those at the end of the speeds are held */
 };
 
+/* What rates of deviations from the form do to a bearing, numbers of it: their force on the inner ring by the dampers [N],
+ * [N m]; what dampers dissipate by them alone, and the power of the loads at rest [W]. With s the power that the force takes
+ * from the ring, dampers dissipate 2 s and this beside what the motion of the ring alone does. */
+enum { EHD_PAIR_OWN = 6, EHD_PAIR_AT_REST, EHD_PAIR_BY_RATES };
+
 /* Law of a contact at one speed. */
 typedef struct ehd_pair_law {
     double coefficient;                /* C [N/m^1.5] */

@@ -20,10 +20,11 @@ static double pair_turned_by(const double *pose, const double *force) {
 }
 
 /* Write the answer of a bearing by its force at rest, stiffness and damping (6, 6), and both powers (2,): what it
- * dissipates, and what its cage brings in, which turns by `turn` of the system. */
+ * dissipates, and what deviations and its cage bring in, which turns by `turn` of the system. by_rates: of
+ * EHD_PAIR_BY_RATES, or null without deviations. */
 static void pair_answer_port(int64_t first, double turn, const ehd_moment *at, const double *motion, const double *pose,
-                             const double *force, const double *stiffness, const double *damping, ehd_answers *answers,
-                             double *powers) {
+                             const double *force, const double *stiffness, const double *damping,
+                             const double *by_rates, ehd_answers *answers, double *powers) {
     const double *rate = motion + answers->m + first;
     double dissipated = 0.0;
     for (int p = 0; p < PAIR_FELT; p++) {
@@ -40,6 +41,15 @@ static void pair_answer_port(int64_t first, double turn, const ehd_moment *at, c
     }
     powers[0] = dissipated;
     powers[1] = pair_turned_by(pose, force) * turn * at->speed;
+    if (by_rates) {
+        double taken = 0.0;
+        for (int p = 0; p < PAIR_FELT; p++) {
+            answers->force[first + p] += by_rates[PAIR_PLACE[p]];
+            taken -= rate[p] * by_rates[PAIR_PLACE[p]];
+        }
+        powers[0] += 2.0 * taken + by_rates[EHD_PAIR_OWN];
+        powers[1] += by_rates[EHD_PAIR_AT_REST] + taken + by_rates[EHD_PAIR_OWN];
+    }
 }
 
 /* Bearings of a kind, one row each; rows of rolling elements are as long as the longest. The blocks of kinds begin with
@@ -56,6 +66,7 @@ typedef struct ehd_pair_block {
     double *memory;                         /* memory of the contacts of all bearings, see pair_law.h */
     double *clock;                          /* (2,): end of the last step, and of that for which they hold [s] */
     const ehd_pair_films *films;
+    const ehd_deviations *deviations;       /* (count,): from the form; null where no bearing has any */
 } ehd_pair_block;
 
 EHD_SIZE_OF(ehd_pair_block)

@@ -13,6 +13,7 @@
 #define EHD_RINGS_H
 
 #include "block.h"
+#include "deviations.h"
 
 /* Bearings, one row a bearing; rows of slices and rollers are as long as the longest. */
 typedef struct ehd_rings {
@@ -29,6 +30,7 @@ typedef struct ehd_rings {
                                         * many slices each stands for */
     const double *cosine, *sine;       /* (count, most_rollers): directions of the rollers in the cage */
     const double *outward;             /* (count): centrifugal force of a roller that is a body by speed^2 [N s2/rad2] */
+    const ehd_deviations *deviations;  /* (count): from its form; null where no bearing has any */
 } ehd_rings;
 
 /* Places of steps on tables of films over the speed: node and weight of the next one, whether speed or temperature lie

@@ -30,6 +30,8 @@ typedef struct ehd_taper_data {
     const double *rib;             /* (ribs, 6), see ehd_taper_rib */
     const double *lever, *profile; /* (slices,): levers on both lines, depths of the profile on one side [m] */
     const double *cosine, *sine;   /* (rollers,): directions of the rollers in the cage */
+    const double *added;           /* (rollers, 2, 2): what deviations add to cone and cup, see ../run/deviations.h; null: none */
+    double *by_rates;              /* (8,): what the rates of that do, see EHD_PAIR_BY_RATES; null where nothing is added */
 } ehd_taper_data;
 
 /* A roller in balance. All zero before the first call. */
@@ -46,6 +48,7 @@ typedef struct ehd_taper_roller {
     double play;                           /* of each raceway [m] */
     double made;                           /* not 0: the next call starts here */
     double stiffness[3][3], damping[3][3]; /* of the force by D and by its rate */
+    double added[2];               /* what deviations add to the approaches of cone and cup [m] */
 } ehd_taper_roller;
 
 /* Force on the inner ring at rest [N], [N m], -dforce/dpose and -dforce/dvelocity. */

@@ -33,6 +33,8 @@ typedef struct taper_given {
     const ehd_pair_law *law;
     const double *memory;
     double d[3], loads[3], arm;
+    const double *added; /* what deviations add to cone and cup, (2, 2), or null */
+    double *by_rates;    /* (5,): force of the inner ring by the rates of that; the last two of EHD_PAIR_BY_RATES; written */
 } taper_given;
 
 /* Contacts at a place of the roller, and what is left of the forces on it; the sum of their sizes [N]. */
@@ -54,6 +56,7 @@ static taper_line taper_line_of(const taper_given *of, int side, const double mo
     const double *normal = side ? data->cup : data->cone;
     taper_line line = {of->law + side, data->lever, data->profile, NULL, data->slices, 0.0, moved[2]};
     line.approach = normal[0] * moved[0] + normal[1] * moved[1] - data->play;
+    if (of->added) line.approach += of->added[2 * side];
     if (of->memory && line.law->rows > 0) line.memory = of->memory + side * EHD_TAPER_MEMORY * data->slices;
     return line;
 }
@@ -216,6 +219,37 @@ static void taper_slow_motion(const taper_given *of, const taper_state *s, ehd_t
         }
 }
 
+/* What rates of deviations do: the roller follows to first order, M V' = r_i times the sums of k n of the cone less those
+ * of the cup times r_o, and forces of the dampers come to the ring by F_i - S' (F_i - F_o). */
+static void taper_by_rates(const taper_given *of, const taper_state *s, const ehd_taper_roller *roller) {
+    const ehd_taper_data *data = of->data;
+    const double rate[2] = {of->added[1], of->added[3]}, *normal[2] = {data->cone, data->cup};
+    double part[2][3][3], whole[3][3], spring[2][3], damper[2][3], force[2][3], pushed[3], v[3];
+    for (int side = 0; side < 2; side++)
+        for (int i = 0; i < 3; i++) {
+            const taper_sums *sum = &s->line[side];
+            spring[side][i] = rate[side] * (i < 2 ? sum->k[0] * normal[side][i] : sum->k[1]);
+            damper[side][i] = rate[side] * (i < 2 ? sum->c[0] * normal[side][i] : sum->c[1]);
+        }
+    taper_matrices(data, s, 0, part[0], part[1]);
+    taper_whole(of, part[0], part[1], whole);
+    for (int i = 0; i < 3; i++) pushed[i] = spring[0][i] - spring[1][i];
+    taper_solve(whole, pushed, v);
+    taper_matrices(data, s, 1, part[0], part[1]);
+    double own = 0.0;
+    for (int side = 0; side < 2; side++) {
+        const double sign = side ? 1.0 : -1.0;
+        for (int i = 0; i < 3; i++) force[side][i] = damper[side][i] + sign * taper_dot(part[side][i], v);
+        own += sign * taper_dot(force[side], v) + rate[side] * rate[side] * s->line[side].c[0] +
+               sign * taper_dot(damper[side], v);
+    }
+    for (int i = 0; i < 3; i++) {
+        of->by_rates[i] = force[0][i];
+        for (int k = 0; k < 3; k++) of->by_rates[i] -= roller->share[k][i] * (force[0][k] - force[1][k]);
+    }
+    of->by_rates[3] = own;
+}
+
 /* Loads of a roller in balance, and how it follows the ring. */
 static void taper_tell(const taper_given *of, taper_state *s, ehd_taper_roller *roller) {
     const ehd_taper_data *data = of->data;
@@ -225,6 +259,11 @@ static void taper_tell(const taper_given *of, taper_state *s, ehd_taper_roller *
     roller->play = data->play;
     memcpy(roller->place, s->place, sizeof roller->place);
     memcpy(roller->ring, of->d, sizeof roller->ring);
+    if (of->added) {
+        roller->added[0] = of->added[0];
+        roller->added[1] = of->added[2];
+        of->by_rates[4] = cone->q * of->added[1] + cup->q * of->added[3];
+    }
     roller->force[0] = cone->q * data->cone[0];
     roller->force[1] = cone->q * data->cone[1];
     roller->force[2] = cone->qb;
@@ -249,6 +288,7 @@ static void taper_tell(const taper_given *of, taper_state *s, ehd_taper_roller *
     taper_line_dampers(&s->lines[0], cone);
     taper_line_dampers(&s->lines[1], cup);
     taper_slow_motion(of, s, roller);
+    if (of->added) taper_by_rates(of, s, roller);
 }
 
 /* Find the balance of a roller; whether it was found. It goes with the ring as it did at the last call, or starts with

@@ -29,6 +29,18 @@ static void taper_on_ring(double m[3][3], double c, double s, double radius, dou
     sum[5][5] += c * c * turn;
 }
 
+/* Add what rates of deviations of a roller do to those of the bearing, EHD_PAIR_BY_RATES. */
+static void taper_add_rates(const double own[5], double radius, double c, double s, double *out) {
+    const double moment = own[2] - radius * own[0];
+    out[0] -= own[0];
+    out[1] -= c * own[1];
+    out[2] -= s * own[1];
+    out[4] += s * moment;
+    out[5] -= c * moment;
+    out[EHD_PAIR_OWN] += own[3];
+    out[EHD_PAIR_AT_REST] += own[4];
+}
+
 /* Force on the inner ring at rest at a pose (6,), and its derivatives; the number of rollers that carry it, or what is
  * wrong: then rollers start from nothing the next time, where a balance was not found.
  *
@@ -45,13 +57,16 @@ int ehd_taper_force(const ehd_taper_data *data, const ehd_pair_law law[2], const
     if (!(fabs(pose[0]) <= far && fabs(pose[1]) <= far && fabs(pose[2]) <= far && fabs(pose[4]) <= tilt &&
           fabs(pose[5]) <= tilt))
         return EHD_TAPER_TOO_FAR;
-    taper_given of = {data, law, NULL, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, fabs(data->lever[data->slices - 1])};
+    taper_given of = {data, law, NULL, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, fabs(data->lever[data->slices - 1]),
+                      NULL, NULL};
+    double by_rates[5];
     const int dry = law[0].rows == 0 && law[1].rows == 0;
     if (!dry || fabs(loads[0]) + fabs(loads[1]) + fabs(loads[2]) / of.arm >= TAPER_LIGHT)
         memcpy(of.loads, loads, sizeof of.loads);
     const double turn_c = cos(cage_angle), turn_s = sin(cage_angle);
     int loaded = 0;
     memset(answer, 0, sizeof *answer);
+    if (data->added) memset(data->by_rates, 0, EHD_PAIR_BY_RATES * sizeof *data->by_rates);
     for (int64_t j = 0; j < data->rollers; j++) {
         ehd_taper_roller *roller = rollers + j;
         const double c = turn_c * data->cosine[j] - turn_s * data->sine[j];
@@ -60,6 +75,10 @@ int ehd_taper_force(const ehd_taper_data *data, const ehd_pair_law law[2], const
         of.d[0] = pose[0] - radius * of.d[2];
         of.d[1] = pose[1] * c + pose[2] * s;
         if (memory) of.memory = memory + j * 2 * EHD_TAPER_MEMORY * data->slices;
+        if (data->added) {
+            of.added = data->added + 4 * j;
+            of.by_rates = memset(by_rates, 0, sizeof by_rates);
+        }
         int found = taper_place(&of, roller);
         if (!found) { /* once more, from nothing */
             memset(roller, 0, sizeof *roller);
@@ -69,6 +88,7 @@ int ehd_taper_force(const ehd_taper_data *data, const ehd_pair_law law[2], const
             memset(rollers, 0, (size_t)data->rollers * sizeof *rollers);
             return EHD_TAPER_NO_BALANCE;
         }
+        if (data->added) taper_add_rates(by_rates, radius, c, s, data->by_rates);
         if (roller->carried <= 0.0) continue;
         loaded++;
         const double moment = roller->force[2] - radius * roller->force[0];

@@ -47,13 +47,17 @@ static int taper_on_port(const ehd_taper_block *of, int64_t b, const ehd_moment 
     const ehd_pair_law law[2] = {pair_law_of(of->all.films, of->all.films_of[b], 0),
                                  pair_law_of(of->all.films, of->all.films_of[b], 1)};
     ehd_taper_answer own;
+    ehd_taper_data data = of->bearings[b];
+    double by_rates[EHD_PAIR_BY_RATES];
+    data.added = deviations_of(of->all.deviations, b, at);
+    data.by_rates = data.added ? by_rates : NULL;
     if (!(fabs(at->speed) <= of->fastest[b])) return EHD_TAPER_TOO_FAR;
     pair_read_pose(first, of->all.offsets[b], motion, pose);
-    const int found = ehd_taper_force(of->bearings + b, law, pose, angle, loads, pair_memory_of(&of->all, b),
+    const int found = ehd_taper_force(&data, law, pose, angle, loads, pair_memory_of(&of->all, b),
                                       of->rollers + b * of->all.longest, &own);
     if (found >= 0)
-        pair_answer_port(first, of->all.turns[b], at, motion, pose, own.force, own.stiffness[0], own.damping[0], answers,
-                         of->all.powers + 2 * b);
+        pair_answer_port(first, of->all.turns[b], at, motion, pose, own.force, own.stiffness[0], own.damping[0],
+                         data.by_rates, answers, of->all.powers + 2 * b);
     return found;
 }
 

@@ -13,7 +13,7 @@ void ehd_taper_go_on(const ehd_taper_data *data, const ehd_pair_law law[2], cons
             double moved[3];
             for (int k = 0; k < 3; k++)
                 moved[k] = side ? rollers[j].place[k] : rollers[j].ring[k] - rollers[j].place[k];
-            const double approach = normal[0] * moved[0] + normal[1] * moved[1] - rollers[j].play;
+            const double approach = normal[0] * moved[0] + normal[1] * moved[1] - rollers[j].play + rollers[j].added[side];
             for (int64_t i = 0; i < n; i++) approaches[i] = approach + moved[2] * data->lever[i] - data->profile[i];
             pair_go_on(law + side, springs, EHD_TAPER_SPRINGS, side, n, approaches, memory);
         }

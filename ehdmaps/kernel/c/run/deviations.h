@@ -1,0 +1,33 @@
+/* ---------------------------------------------------------------------------------------------------------------------
+ * Deviations of a bearing from its form: waves of rings and rolling elements, spalls, elements of other sizes
+ *
+ * They bring the bodies of a contact closer, or further apart, and turn with their rings and elements. The approach that
+ * they add to the contact of element j with the inner ring, side 0, or with the outer ring, side 1, is
+ *
+ *     e = size_j + r(p_j - q) + b_j(s + pi) of the inner ring,    e = size_j + r(p_j - q) + b_j(s) of the outer one,
+ *
+ * p_j the angle of the element, q that of the ring, s that of the element about its own axis in the cage. Each r and b is a
+ * table over a turn, cubic between its nodes.
+ * ------------------------------------------------------------------------------------------------------------------ */
+
+#ifndef EHD_DEVIATIONS_H
+#define EHD_DEVIATIONS_H
+
+/* Deviations of a bearing. */
+typedef struct ehd_deviations {
+    int64_t elements, nodes;  /* rolling elements, none of a bearing without deviations; nodes of a turn */
+    double start;             /* angle of the cage where that of the system is zero [rad] */
+    double turns[4];          /* angles of cage, inner ring, outer ring, and of elements in the cage, by that of the system */
+    const int64_t *tables;    /* (elements, 3): table of the inner ring, of the outer ring, of the element; < 0 none */
+    const double *places;     /* (elements): angles in the cage [rad] */
+    const double *sizes;      /* (elements): half of what the diameter is larger [m] */
+    const double *table;      /* (tables, nodes + 1, 2): approach [m], and its change to the next node by its slope [m] */
+    double *added;            /* (elements, 2, 2): approach [m] and its rate [m/s] of both contacts, written */
+    double *moment;           /* (2): angle [rad] and speed [rad/s] of the system for which these are */
+} ehd_deviations;
+
+/* What deviations add to the contacts at an angle [rad] and speed [rad/s] of the system, (elements, 2, 2); null of a bearing
+ * without any. */
+const double *ehd_deviations_at(const ehd_deviations *of, double angle, double speed);
+
+#endif

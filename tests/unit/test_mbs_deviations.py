@@ -1,0 +1,167 @@
+"""Deviations of bearings from their form: tables in C, what they do to contacts, the energy that they bring in."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics.bearing import BearingGeometry
+from mbs import assemble, parse_scene
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.deviations import Deviations, Spall, Turns, Wave, deviation_data, spectrum
+from mbs.bearings.laws import hertz
+from mbs.model.elements import Operation
+from mbs.model.equilibrium import equilibrium
+from mbs.model.profiles import SpeedProfile
+from mbs.settings import Settings
+from mbs.transient.run import run
+from tests.conformance.machines import BALL, FEW, NU, SPHERE, TABLE, TAPERED, Machine, alike, preloaded
+
+Z = 10
+EVEN = BearingGeometry(
+    name="even",
+    inner_raceway_diameter=52.8e-3,
+    outer_raceway_diameter=79.2e-3,
+    roller_diameter=13.2e-3,
+    roller_length=14e-3,
+    rollers=Z,
+    diametral_clearance=-10e-6,
+)
+"""Gamma is 0.2, so that the cage makes 2 and the rollers 12 turns in 5 of the shaft, and spectra have no leakage."""
+
+ENERGY = """
+waviness = [{ on = "inner", waves = 9, amplitude = "0.3 um" }, { on = "outer", waves = 4, amplitude = "0.3 um" }]
+size_difference = ["0.4 um", "0 um", "-0.3 um"]
+"""
+
+
+def data(*waves, spalls=(), sizes=(), outer=0.0):
+    """Tables of a bearing whose inner ring turns once with the system."""
+    places = 2.0 * math.pi * np.arange(Z) / Z
+    given = Deviations(waves, spalls, sizes)
+    return deviation_data(given, EVEN, Turns.of(EVEN, 1.0, outer), 0.3, places, np.arange(Z)), places
+
+
+def test_tables_are_the_waves_at_any_angle():
+    """Approach and rate against cosines of each part's own angle: cubics to 1e-7 of a wave, their slopes to 2e-5."""
+    waves = Wave("inner", 7, 2e-7, 0.4), Wave("outer", 60, 1e-7, -1.0), Wave("elements", 3, 5e-8, 0.2, element=4)
+    made, places = data(*waves, sizes=(0.0, 4e-7), outer=-0.5)
+    speed, turns = 120.0, (0.5 * (1.0 - 0.2) - 0.25 * (1.0 + 0.2), 1.0, -0.5, 0.75 * (5.0 - 0.2))
+    for angle in (0.0, 1.7, -400.3):
+        cage = 0.3 + places + turns[0] * angle
+        wanted = np.zeros((Z, 2, 2))
+        for side, (waves_of, n, phase) in enumerate(((2e-7, 7, 0.4), (1e-7, 60, -1.0))):
+            turn = n * (cage - turns[1 + side] * angle) + phase
+            wanted[:, side, 0] = waves_of * np.cos(turn)
+            wanted[:, side, 1] = -waves_of * n * (turns[0] - turns[1 + side]) * speed * np.sin(turn)
+            own = 3.0 * (turns[3] * angle + (math.pi if side == 0 else 0.0)) + 0.2
+            wanted[3, side] += 5e-8 * np.cos(own), -5e-8 * 3.0 * turns[3] * speed * np.sin(own)
+            wanted[1, side, 0] += 2e-7
+        found = made.at(angle, speed)
+        np.testing.assert_allclose(found[..., 0], wanted[..., 0], atol=1e-7 * 3e-7)
+        np.testing.assert_allclose(found[..., 1], wanted[..., 1], atol=2e-5 * np.abs(wanted[..., 1]).max())
+
+
+def test_a_spall_is_as_long_as_its_arc_and_no_deeper_than_rollers_reach():
+    length = 2e-3
+    made, _ = data(spalls=(Spall("outer", 1.0, length, 1e-3),))
+    steps = 16000
+    path = np.array([made.at(angle, 0.0)[0, 1, 0] for angle in np.arange(steps) * 2.0 * math.pi * 2.5 / steps])
+    # a roller that stands on both edges is length^2/(8 R) below them
+    assert -path.min() == pytest.approx(length**2 / (8.0 * 6.6e-3), rel=1e-3)  # samples
+    inside = np.count_nonzero(path) / steps * math.pi * 79.2e-3
+    assert inside == pytest.approx(length, rel=0.02)  # ends are flat, and below round-off
+
+
+def test_a_spectrum_is_the_same_by_its_seed():
+    one, same, other = (spectrum("outer", (2, 9), 1e-6, 1.0, seed, [None]) for seed in (1, 1, 2))
+    assert one == same != other
+    assert [wave.amplitude * wave.waves for wave in one] == pytest.approx([2e-6] * 8)
+
+
+BEARING = Bearing(EVEN, slices=3)
+FORCE = BearingForce(BEARING, hertz(BEARING))
+
+
+def lines(*deviating, samples=640):
+    """Force of a centred, preloaded bearing over five turns, y + i z by signed order in fifths [N]."""
+    element = BearingElement("own", "a", "b", BEARING, FORCE, 330.0, deviations=Deviations(*deviating))
+    angles, still = 10.0 * math.pi * np.arange(samples) / samples, np.zeros(6)
+    found = np.array([element.advance(None, still, still, Operation(1.0, angle))[0].force for angle in angles])
+    return np.fft.fft(found[:, 1] + 1j * found[:, 2]) / samples
+
+
+SMALL = 1e-12
+"""Amplitude [m]: what waves do is linear to 1e-6, their part of the overlap."""
+
+
+@pytest.mark.parametrize("part", ["inner", "outer"])
+@pytest.mark.parametrize("waves", [2, Z - 2, Z - 1, Z, Z + 1, 2 * Z - 1, 2 * Z, 2 * Z + 1])
+def test_a_centred_ring_is_moved_by_waves_beside_multiples_of_the_rollers_alone(part, waves):
+    """n = k Z +- 1, at k BPFI +- 1 or k BPFO, forward or backward; all else is below -80 dB, where round-off is."""
+    found, reference = np.abs(lines((Wave(part, waves, SMALL),))), SMALL * FORCE(np.zeros(6))[1][1, 1]
+    k = round(waves / Z)
+    side = waves - k * Z
+    if abs(side) == 1:
+        place = round(5.0 * (6.0 * k * side + 1.0 if part == "inner" else -4.0 * k * side)) % found.size
+        assert found[place] == pytest.approx(reference, rel=1e-4)
+        found[place] = 0.0
+    assert found.max() < 1e-4 * reference
+
+
+def test_other_rollers_are_at_the_cage_and_at_twice_their_own_speed():
+    """FTF 0.4; two waves of one roller at 2 x 2.4 -+ 0.4, three waves at nothing: the contacts cancel."""
+    larger = np.abs(lines((), (), (SMALL,)))
+    assert np.argmax(larger) == 2 and np.sort(larger)[-2] < 1e-4 * larger.max()
+    two, three = (np.abs(lines((Wave("elements", n, SMALL, element=1),))) for n in (2, 3))
+    # e^(+-4.8 i) e^(0.4 i): orders 5.2 and -4.4
+    assert sorted(np.argsort(two)[-2:]) == [26, two.size - 22] and np.sort(two)[-3] < 1e-4 * two.max()
+    assert three.max() < 1e-4 * two.max()
+
+
+@pytest.mark.parametrize(
+    "machine",
+    [
+        Machine("cylindrical", alike(NU), axial=False),
+        Machine("rollers as bodies", alike(FEW), axial=False),
+        Machine("deep groove", alike(BALL)),
+        Machine("self-aligning", alike(SPHERE)),
+        Machine("tapered", preloaded(TAPERED)),
+    ],
+    ids=lambda machine: machine.name,
+)
+def test_the_energy_that_deviations_bring_in_is_accounted_for(machine):
+    """What an element takes and gives is what it stores, but for the steps: what is left goes with them."""
+    left = []
+    text = machine.text((200.0, -3000.0, 150.0)).replace("[[bearings]]\n", "[[bearings]]\n" + ENERGY)
+    model = assemble(parse_scene(text, "machine", "machine.toml"), "hertz:1.25e-5 s")
+    start = equilibrium(model.system, model.operation).displacement
+    for step in (1e-5, 5e-6):
+        done = run(
+            model.system, SpeedProfile.constant(150.0), 2e-3, Settings(step=step, sample=2e-5), displacement=start
+        )
+        (element, *_) = done.energy.elements
+        left.append(abs(element.work - (element.driven - element.dissipated - element.change)))
+        brought = abs(element.driven) + abs(element.dissipated)
+    # rollers that are bodies swing in a few steps; the work of centrifugal loads begins with the first step
+    assert left[1] < 0.02 * brought and left[1] < 0.6 * left[0]
+
+
+def test_what_a_scene_says_wrongly_is_said():
+    waves = (
+        '{ on = "inner", waves = 0, amplitude = "1 um" }, { on = "outer", waves = 2, amplitude = "1 um", element = 1 }'
+    )
+    keys = f"waviness = [{waves}]\nsize_difference = {['1 um'] * 13}"
+    text = Machine("one", (("middle", f"{NU}\n{keys}"), ("left", f"{TABLE}\nspall = []")), axial=False).text()
+    with pytest.raises(InputError) as error:
+        parse_scene(text, "one", "one")
+    said = " ".join(error.value.problems)
+    assert "waves: got 0; allowed: a whole number from 1 to 1000, or a list of the first and the last one" in said
+    assert 'element: got 1 beside on = "outer"; allowed: with on = "elements"' in said
+    assert "allowed: a list of at most 12 lengths, one an element" in said
+    assert "spall: has no effect on a bearing by matrices; allowed: bearings with rolling elements" in said
