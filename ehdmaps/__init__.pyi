@@ -13,7 +13,7 @@ from ehdmaps.jobs.show.compare import Comparison as Comparison
 from ehdmaps.maps.emap import EHDMap as EHDMap
 from ehdmaps.maps.emap import open_map as open_map
 from ehdmaps.maps.law import ContactLaw as ContactLaw
-from ehdmaps.maps.law import LawAtPoint as LawAtPoint
+from ehdmaps.maps.law_films import LawAtPoint as LawAtPoint
 from ehdmaps.physics.bearing import BearingGeometry as BearingGeometry
 from ehdmaps.physics.contact import LineContact as LineContact
 from ehdmaps.physics.contact import OperatingPoint as OperatingPoint

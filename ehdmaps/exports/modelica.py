@@ -28,7 +28,7 @@ from ehdmaps.errors import InputError, Problems
 from ehdmaps.exports.target import Target, chosen_kind, chosen_place, origin
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.kernels import memory_table
-from ehdmaps.maps.law import LawAtPoint
+from ehdmaps.maps.law_films import LawAtPoint
 from ehdmaps.outputs import Kind, Output, check_outputs, has_mark, write_text
 from ehdmaps.program import plain
 from ehdmaps.units import SPEED, TEMPERATURE

@@ -23,8 +23,8 @@ compilation    curves -> table over approach, speed and temperature
 kernels        the room of these tables and of the C that reads them, at one point or many; films with memory
 outside_calls  arguments of a law, and its points outside the map
 law_errors     bounds of the errors of a law, from what the map states
-law_films      below which load the films of a law are a guess, and how they lock
-law            `ContactLaw`, `LawAtPoint`
+law_films      below which load the films of a law are a guess, and how they lock; `LawAtPoint`
+law            `ContactLaw`
 =============  =======================================================================================
 
 Arrows run from these modules to `kernels`, and none runs back. Nothing is imported here: take the names from their

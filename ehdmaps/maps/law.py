@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray, IntArray
-from ehdmaps.errors import InputError, MapError, OutsideMapError
+from ehdmaps.errors import InputError, MapError
 from ehdmaps.maps.compilation import (
     Resolution,
     compile_table,
@@ -23,12 +23,12 @@ from ehdmaps.maps.film_field import DryField, FilmField, LowLoads
 from ehdmaps.maps.kernels.ends import ends_of
 from ehdmaps.maps.kernels.film_response import FilmResponse
 from ehdmaps.maps.kernels.kept_tables import keeping, kept_table, key_of
-from ehdmaps.maps.kernels.law_in_c import LawAddress, LawInC, PointInC
+from ehdmaps.maps.kernels.law_in_c import LawAddress, LawInC
 from ehdmaps.maps.kernels.locked_film import LockedFactors
-from ehdmaps.maps.kernels.memory import FilmMemory, FilmState
-from ehdmaps.maps.kernels.tables import LOAD, LOAD_TOLERANCE, ApproachTable, LawTable, Point
-from ehdmaps.maps.law_errors import LawBounds, LawChange, LawErrors, changed_table
-from ehdmaps.maps.law_films import LawFilms
+from ehdmaps.maps.kernels.memory import FilmState
+from ehdmaps.maps.kernels.tables import LOAD_TOLERANCE, ApproachTable, LawTable
+from ehdmaps.maps.law_errors import LawChange, LawErrors, changed_table
+from ehdmaps.maps.law_films import LawAtPoint, LawFilms
 from ehdmaps.maps.outside_calls import Axis, Excursion, OutsideCalls, Range, broadcast, check_finite, floats
 from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.maps.rough_layer import GONE_BELOW
@@ -43,9 +43,6 @@ if TYPE_CHECKING:
 
 LawKind = Literal["series", "inner", "outer", "line"]
 OutsidePolicy = Literal["error", "clamp", "asymptote"]
-
-LEAST_LOAD = 1.0
-"""Load from which on the error of a continued film is looked at [N/m]."""
 
 LOAD_REACH, SPEED_REACH = 100.0, 10.0
 """How far the policy `asymptote` goes, as multiples of the highest load and speed; it holds the edge beyond."""
@@ -307,23 +304,11 @@ class ContactLaw:
     def excursions(self) -> tuple[Excursion, ...]:
         """Excursions of points outside the map so far: axis, side, number, the farthest one, and where the map ends.
 
-        Of calls of the law and of `LawAtPoint`, and of what callers in C report by `note_outside`. Loads below the
+        Of calls of the law and of `LawAtPoint`. Loads below the
         map are told where the film there is a guess, see `low_loads`, and speeds below it where films are continued;
         they are no error with any policy.
         """
         return self._outside.excursions
-
-    def note_outside(self, axis: Axis, values: npt.ArrayLike) -> None:
-        """Take part in `excursions` with values that a caller of the functions in C met.
-
-        Parameters
-        ----------
-        axis : {"load", "entrainment_speed", "temperature"}
-            Which axis of the map.
-        values : float or array
-            [N/m], [m/s] or [K]; those within the map are passed over.
-        """
-        self._outside.note(axis, np.atleast_1d(np.asarray(values, dtype=np.float64)))
 
     def reset_counts(self) -> None:
         """Start counting again from zero."""
@@ -613,165 +598,3 @@ class ContactLaw:
         forces, _ = self._in_c(bool(np.any(flat[4]))).forces((flat[0], np.zeros_like(flat[0]), *flat[2:]))
         loads: FloatArray = forces[0]
         return loads
-
-
-@dataclass(frozen=True)
-class LawAtPoint:
-    """A contact law at one speed, temperature and centrifugal load.
-
-    Attributes
-    ----------
-    entrainment_speed, temperature, centrifugal_load : float
-        u [m/s], T [K], q [N/m].
-    law : ContactLaw
-        Where it comes from; it keeps the counts.
-    outside : bool
-        Whether u, T or q lies outside the map.
-    """
-
-    entrainment_speed: float
-    temperature: float
-    centrifugal_load: float
-    _made: PointInC
-    law: ContactLaw
-    outside: bool
-
-    def __repr__(self) -> str:
-        """Speed, temperature and load, and the law."""
-        thrown = f", {self.centrifugal_load:.4g} N/m centrifugal" if self.centrifugal_load else ""
-        at = f"{self.entrainment_speed:.4g} m/s, {TEMPERATURE.text(self.temperature)}{thrown}"
-        return f"<LawAtPoint {at}, of {self.law!r}>"
-
-    @property
-    def point(self) -> Point:
-        """Numbers and lines at this speed, temperature and centrifugal load, as C reads them."""
-        return self._made.point
-
-    def approach(self, load: float) -> float:
-        """Approach [m] at which the contacts carry a load at rest, with the whole film; for zero the highest without.
-
-        Parameters
-        ----------
-        load : float
-            w >= 0 on the inner contact [N/m].
-        """
-        return self._made.approach(load)
-
-    @property
-    def conditions(self) -> tuple[float, float, float]:
-        """Entrainment speed, temperature and centrifugal load."""
-        return self.entrainment_speed, self.temperature, self.centrifugal_load
-
-    @cached_property
-    def _guessed_below(self) -> float:
-        """Load below which the film is a guess [N/m]; 0 where it is none."""
-        return self.law.guessed_below(self.entrainment_speed, self.temperature)
-
-    @cached_property
-    def memory(self) -> FilmMemory:
-        """The law with films that need time, for steps in time."""
-        factors = self.law.locked_factors(self.entrainment_speed, self.temperature)
-        return FilmMemory(self.point, self.law.contacts, self.entrainment_speed, factors, self._check_loads)
-
-    def bounds(self, loads: FloatArray) -> LawBounds | None:
-        """Error bounds of stiffness, damping and approach at some loads; None where the law states no errors.
-
-        Parameters
-        ----------
-        loads : array (n,)
-            Loads on the inner contact [N/m].
-
-        Returns
-        -------
-        LawBounds or None
-            None for a law that is not made from a map, and at standstill.
-        """
-        if self.law.errors is None:
-            return None
-        names = [contact.name for contact in self.law.contacts]
-        u, T, continued = self.entrainment_speed, self.temperature, self.law.continued
-        added = None
-        if continued is not None and continued.outside(u, T):
-            added = {name: continued.errors(name, np.maximum(loads, LEAST_LOAD), abs(u), T) for name in names}
-        return self.law.errors.bounds(names, loads, u, T, added)
-
-    def rolling_force(self, load: npt.ArrayLike) -> FloatArray:
-        """Rolling force of each contact at a load on the inner one, both walls together [N/m].
-
-        The power that the films take is its sum over the contacts times |u|, per length. For loads outside the map see
-        `ehdmaps.maps.rolling_film`.
-
-        Parameters
-        ----------
-        load : float or array
-            w [N/m], >= 0; the outer contact of `series` carries the centrifugal load besides.
-
-        Returns
-        -------
-        array (contacts, ...)
-            In the order of `ContactLaw.contacts`, over the shape of the loads.
-
-        Raises
-        ------
-        InputError
-            For loads that are no finite numbers >= 0.
-        MapError
-            If the map holds no rolling force.
-        """
-        if self.law.rolling is None:
-            raise MapError(
-                "contact law, rolling force: the map holds none, or not at all its points; allowed: maps without holes "
-                "by the solvers reynolds and openfoam, of schema 3; generate it again"
-            )
-        loads = floats(load=load)["load"]
-        check_finite({"load": loads})
-        if np.any(loads < 0.0):
-            raise InputError(f"contact law, load: got {float(np.min(loads)):.6g} N/m; allowed: >= 0")
-        extra = {"outer": self.centrifugal_load}
-        u, T = self.entrainment_speed, self.temperature
-        return np.stack(
-            [
-                self.law.rolling.rolling_force(
-                    contact.name, loads + extra.get(contact.name, 0.0), u, T, self.law.supply
-                )
-                for contact in self.law.contacts
-            ]
-        )
-
-    def _check_loads(self, loads: FloatArray) -> None:
-        """Count loads above the map, and raise where the law does."""
-        above = int(np.count_nonzero(loads > self.point.highest_load * (1.0 + LOAD_TOLERANCE)))
-        if not above:
-            return
-        self.law.counts[LOAD] += above
-        self.law._outside.keep(Range("load", -np.inf, self.point.highest_load).excursions(loads))
-        if self.law.outside == "error":
-            raise OutsideMapError(
-                f"film memory, load: got {float(np.max(loads)):.6g} N/m, above the map, which ends at "
-                f"{self.point.highest_load:.6g} N/m, at {self.entrainment_speed:.6g} m/s, {self.temperature:.6g} K "
-                f"({above} of {loads.size} points above)\nmake a map that reaches there, or take a law with "
-                "outside='clamp' or outside='asymptote'"
-            )
-
-    def __call__(self, delta: npt.ArrayLike, rate: npt.ArrayLike) -> tuple[Any, Any, Any]:
-        """Load and its derivatives; as calling the `ContactLaw`."""
-        return self.evaluate(delta, rate)[:3]
-
-    def evaluate(self, delta: npt.ArrayLike, rate: npt.ArrayLike) -> tuple[Any, Any, Any, bool]:
-        """As a call, and whether any of it lies outside the map."""
-        if isinstance(delta, float) and isinstance(rate, float):
-            force = self._made.force(delta, rate)
-            if force is not None and not 0.0 < force[0] < self._guessed_below:
-                return *map(np.float64, force), self.outside
-        named = floats(delta=delta, rate=rate)
-        shape, flat = broadcast(named)
-        forces, counts = self._made.forces(*flat)
-        if np.any(counts):
-            fixed = (self.entrainment_speed, self.temperature, self.centrifugal_load)
-            flat += [np.full(flat[0].size, value) for value in fixed]
-            self.law._settle(counts, named, flat)
-        if self._guessed_below > 0.0:
-            low = forces[0][(forces[0] > 0.0) & (forces[0] < self._guessed_below)]
-            self.law._outside.keep(Range("load", self._guessed_below, np.inf).excursions(low))
-        w, dw_ddelta, dw_drate = (force.reshape(shape)[()] for force in forces)
-        return w, dw_ddelta, dw_drate, self.outside or bool(counts.any())

@@ -1,4 +1,4 @@
-"""Properties of a law's films besides its table: the load below which they are a guess, and how they lock."""
+"""Films of a law besides its table: the load below which they are a guess, how they lock; and the law at one speed."""
 
 from __future__ import annotations
 
@@ -6,21 +6,32 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.errors import InputError, MapError, OutsideMapError
 from ehdmaps.maps.contact_curve import ContactCurve
 from ehdmaps.maps.film_field import FilmField, LowLoads, guessed_at, looked_at, low_loads
 from ehdmaps.maps.kernels.film_response import FilmResponse, FilmsOfContact
+from ehdmaps.maps.kernels.law_in_c import PointInC
 from ehdmaps.maps.kernels.locked_film import FORMULA, LockedFactors, film_of, locked_compliances, relaxation_times
+from ehdmaps.maps.kernels.memory import FilmMemory
+from ehdmaps.maps.kernels.tables import LOAD, LOAD_TOLERANCE, Point
+from ehdmaps.maps.law_errors import LawBounds
 from ehdmaps.maps.oil_layer import oil_layer
-from ehdmaps.maps.outside_calls import Excursion, Range
+from ehdmaps.maps.outside_calls import Excursion, Range, broadcast, check_finite, floats
 from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width, natural_time
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
+from ehdmaps.units import TEMPERATURE
+
+LEAST_LOAD = 1.0
+"""Load from which on the error of a continued film is looked at [N/m]."""
 
 LIGHTEST = 1.0
 """Load down to which it is said what the law leaves out [N/m]; lighter contacts leave out as much."""
@@ -248,3 +259,166 @@ def _films_of(
     natural = natural_time(loads, films[1], u, contact.radius, contact.reduced_modulus)
     passing = half_width(loads, contact.radius, contact.reduced_modulus) / u
     return FilmsOfContact(*_law((contact,), loads, u, films, factors), natural, passing, frequencies, differences)
+
+
+@dataclass(frozen=True)
+class LawAtPoint:
+    """A contact law at one speed, temperature and centrifugal load.
+
+    Attributes
+    ----------
+    entrainment_speed, temperature, centrifugal_load : float
+        u [m/s], T [K], q [N/m].
+    law : ContactLaw
+        Where it comes from; it keeps the counts.
+    outside : bool
+        Whether u, T or q lies outside the map.
+    """
+
+    entrainment_speed: float
+    temperature: float
+    centrifugal_load: float
+    _made: PointInC
+    law: Any
+    outside: bool
+
+    def __repr__(self) -> str:
+        """Speed, temperature and load, and the law."""
+        thrown = f", {self.centrifugal_load:.4g} N/m centrifugal" if self.centrifugal_load else ""
+        at = f"{self.entrainment_speed:.4g} m/s, {TEMPERATURE.text(self.temperature)}{thrown}"
+        return f"<LawAtPoint {at}, of {self.law!r}>"
+
+    @property
+    def point(self) -> Point:
+        """Numbers and lines at this speed, temperature and centrifugal load, as C reads them."""
+        return self._made.point
+
+    def approach(self, load: float) -> float:
+        """Approach [m] at which the contacts carry a load at rest, with the whole film; for zero the highest without.
+
+        Parameters
+        ----------
+        load : float
+            w >= 0 on the inner contact [N/m].
+        """
+        return self._made.approach(load)
+
+    @property
+    def conditions(self) -> tuple[float, float, float]:
+        """Entrainment speed, temperature and centrifugal load."""
+        return self.entrainment_speed, self.temperature, self.centrifugal_load
+
+    @cached_property
+    def _guessed_below(self) -> float:
+        """Load below which the film is a guess [N/m]; 0 where it is none."""
+        return float(self.law.guessed_below(self.entrainment_speed, self.temperature))
+
+    @cached_property
+    def memory(self) -> FilmMemory:
+        """The law with films that need time, for steps in time."""
+        factors = self.law.locked_factors(self.entrainment_speed, self.temperature)
+        return FilmMemory(self.point, self.law.contacts, self.entrainment_speed, factors, self._check_loads)
+
+    def bounds(self, loads: FloatArray) -> LawBounds | None:
+        """Error bounds of stiffness, damping and approach at some loads; None where the law states no errors.
+
+        Parameters
+        ----------
+        loads : array (n,)
+            Loads on the inner contact [N/m].
+
+        Returns
+        -------
+        LawBounds or None
+            None for a law that is not made from a map, and at standstill.
+        """
+        if self.law.errors is None:
+            return None
+        names = [contact.name for contact in self.law.contacts]
+        u, T, continued = self.entrainment_speed, self.temperature, self.law.continued
+        added = None
+        if continued is not None and continued.outside(u, T):
+            added = {name: continued.errors(name, np.maximum(loads, LEAST_LOAD), abs(u), T) for name in names}
+        bounds: LawBounds = self.law.errors.bounds(names, loads, u, T, added)
+        return bounds
+
+    def rolling_force(self, load: npt.ArrayLike) -> FloatArray:
+        """Rolling force of each contact at a load on the inner one, both walls together [N/m].
+
+        The power that the films take is its sum over the contacts times |u|, per length. For loads outside the map see
+        `ehdmaps.maps.rolling_film`.
+
+        Parameters
+        ----------
+        load : float or array
+            w [N/m], >= 0; the outer contact of `series` carries the centrifugal load besides.
+
+        Returns
+        -------
+        array (contacts, ...)
+            In the order of `ContactLaw.contacts`, over the shape of the loads.
+
+        Raises
+        ------
+        InputError
+            For loads that are no finite numbers >= 0.
+        MapError
+            If the map holds no rolling force.
+        """
+        if self.law.rolling is None:
+            raise MapError(
+                "contact law, rolling force: the map holds none, or not at all its points; allowed: maps without holes "
+                "by the solvers reynolds and openfoam, of schema 3; generate it again"
+            )
+        loads = floats(load=load)["load"]
+        check_finite({"load": loads})
+        if np.any(loads < 0.0):
+            raise InputError(f"contact law, load: got {float(np.min(loads)):.6g} N/m; allowed: >= 0")
+        extra = {"outer": self.centrifugal_load}
+        u, T = self.entrainment_speed, self.temperature
+        return np.stack(
+            [
+                self.law.rolling.rolling_force(
+                    contact.name, loads + extra.get(contact.name, 0.0), u, T, self.law.supply
+                )
+                for contact in self.law.contacts
+            ]
+        )
+
+    def _check_loads(self, loads: FloatArray) -> None:
+        """Count loads above the map, and raise where the law does."""
+        above = int(np.count_nonzero(loads > self.point.highest_load * (1.0 + LOAD_TOLERANCE)))
+        if not above:
+            return
+        self.law.counts[LOAD] += above
+        self.law._outside.keep(Range("load", -np.inf, self.point.highest_load).excursions(loads))
+        if self.law.outside == "error":
+            raise OutsideMapError(
+                f"film memory, load: got {float(np.max(loads)):.6g} N/m, above the map, which ends at "
+                f"{self.point.highest_load:.6g} N/m, at {self.entrainment_speed:.6g} m/s, {self.temperature:.6g} K "
+                f"({above} of {loads.size} points above)\nmake a map that reaches there, or take a law with "
+                "outside='clamp' or outside='asymptote'"
+            )
+
+    def __call__(self, delta: npt.ArrayLike, rate: npt.ArrayLike) -> tuple[Any, Any, Any]:
+        """Load and its derivatives; as calling the `ContactLaw`."""
+        return self.evaluate(delta, rate)[:3]
+
+    def evaluate(self, delta: npt.ArrayLike, rate: npt.ArrayLike) -> tuple[Any, Any, Any, bool]:
+        """As a call, and whether any of it lies outside the map."""
+        if isinstance(delta, float) and isinstance(rate, float):
+            force = self._made.force(delta, rate)
+            if force is not None and not 0.0 < force[0] < self._guessed_below:
+                return *map(np.float64, force), self.outside
+        named = floats(delta=delta, rate=rate)
+        shape, flat = broadcast(named)
+        forces, counts = self._made.forces(*flat)
+        if np.any(counts):
+            fixed = (self.entrainment_speed, self.temperature, self.centrifugal_load)
+            flat += [np.full(flat[0].size, value) for value in fixed]
+            self.law._settle(counts, named, flat)
+        if self._guessed_below > 0.0:
+            low = forces[0][(forces[0] > 0.0) & (forces[0] < self._guessed_below)]
+            self.law._outside.keep(Range("load", self._guessed_below, np.inf).excursions(low))
+        w, dw_ddelta, dw_drate = (force.reshape(shape)[()] for force in forces)
+        return w, dw_ddelta, dw_drate, self.outside or bool(counts.any())

@@ -576,10 +576,9 @@ def _spirax() -> Lubricant:
 
 def _of_class(oil_class: OilClass) -> Lubricant:
     """Oil of a viscosity class."""
-    cold, hot = oil_class.viscosities
     return Lubricant.roelands(
-        viscosity_40=cold,
-        viscosity_100=hot,
+        viscosity_40=oil_class.viscosities[0],
+        viscosity_100=oil_class.viscosities[1],
         density=DENSITY,
         density_slope=DENSITY_SLOPE,
         pressure_viscosity=oil_class.correlation,

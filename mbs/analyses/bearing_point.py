@@ -20,7 +20,6 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.heat import ISOTHERMAL
-from ehdmaps.physics.solids import reduced_modulus
 from ehdmaps.units import written
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
@@ -235,13 +234,17 @@ def bearing_point(
     gauge = element.gauge(pose, operation)
     assert gauge is not None  # it has a `BearingForce`
     problems = outside_map(force.law, float(rollers.load_per_length.max()), u, temperature)
-    modulus = reduced_modulus(force.bearing.material, force.bearing.material)
+    inner, heaviest = (
+        force.bearing.geometry.contacts(force.bearing.material, "iso16281")[0],
+        rollers.load_per_length.max(),
+    )
+    isothermal = np.isfinite(contacts.central_film).any() and not _knows_heat(films)
     notes = [
         spike_tip(contacts),
         extrapolated(contacts, films.lubricant),
         fading(force.law, u),
         guessed(force.law, rollers.load_per_length, u, temperature),
-        "" if _knows_heat(films) else heated(contacts, films.lubricant, modulus, u, temperature),
+        heated(inner, films.lubricant, heaviest, u, temperature) if isothermal else "",
         _loose(balance.element_stiffness[0][1:3, 1:3], given),
         _between_points(films, element, pose, operation, given),
     ]

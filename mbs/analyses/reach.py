@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -11,7 +12,7 @@ import numpy.typing as npt
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.units import LOAD, RPM
 from mbs.bearings.contact_report import axes_left
-from mbs.bearings.laws import DryLaw, TableLaw
+from mbs.bearings.laws import DryLaw
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.matrices import MatrixElement
@@ -117,13 +118,13 @@ def axes_outside(model: Model, speed: float, loads: Mapping[str, float] | None =
     found = {}
     for bearing in model.bearings:
         law = bearing.force.law
-        if isinstance(law, DryLaw) and not isinstance(law, TableLaw):
+        if isinstance(law, DryLaw) and math.isinf(law.highest_load):
             continue
         load = (loads or {}).get(bearing.name, 0.0)
         u = bearing.entrainment_speed(Operation(speed))
         axes = axes_left(law, load, u, bearing.temperature)
-        if isinstance(law, TableLaw):
-            end = f"{LOAD.text(float(law.line_load[-1]))}, the last one"
+        if isinstance(law, DryLaw):
+            end = f"{LOAD.text(law.highest_load)}, the last one"
         else:
             end = f"{LOAD.text(law.known_load(u, bearing.temperature))}, where the map ends"
         words = "; ".join(axes) or f"a load above {end}"

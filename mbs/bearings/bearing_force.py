@@ -41,7 +41,7 @@ from mbs.model.elements import Forces
 
 if TYPE_CHECKING:
     from ehdmaps.maps.kernels.memory import FilmState
-    from ehdmaps.maps.law import LawAtPoint
+    from ehdmaps.maps.law_films import LawAtPoint
 
 
 class ForceInTime:

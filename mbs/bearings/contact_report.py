@@ -33,10 +33,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
 from ehdmaps.maps.kernels.tables import LOAD_TOLERANCE
 from ehdmaps.physics.bearing import BearingGeometry
-from ehdmaps.physics.heat import inlet_shear_heating_factor, thermal_loading, viscosity_slope
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.heat import inlet_heats
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.rollers.ratings import cylindrical_ratings
 from ehdmaps.physics.solution import tip_words
@@ -45,7 +45,7 @@ from ehdmaps.units import LOAD, PRESSURE, SPEED, TEMPERATURE
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import ContactState, FilmSource
 from mbs.bearings.force_at_point import RollerLoads
-from mbs.bearings.laws import DryLaw, Law, TableLaw
+from mbs.bearings.laws import DryLaw, Law
 from mbs.model.findings import RingPoint
 
 
@@ -146,7 +146,7 @@ def outside_map(law: Law, load: float, entrainment_speed: float, temperature: fl
         T [K].
     """
     fate = "where the law is held at its edge; make a map that reaches there"
-    if isinstance(law, TableLaw):
+    if isinstance(law, DryLaw):
         fate = "where the law goes on straight; add points that reach there"
     return [f"{axis}, {fate}" for axis in axes_left(law, load, entrainment_speed, temperature)]
 
@@ -161,12 +161,10 @@ def axes_left(law: Law, load: float, entrainment_speed: float, temperature: floa
     load, entrainment_speed, temperature : float
         Largest load of a slice [N/m], u [m/s], T [K].
     """
-    if isinstance(law, TableLaw):
-        last = float(law.line_load[-1])
+    if isinstance(law, DryLaw):
+        last = law.highest_load
         above = load > last * (1.0 + LOAD_TOLERANCE)
         return [f"load per length of {LOAD.text(load)} is above the last point of the law, {LOAD.text(last)}"] * above
-    if isinstance(law, DryLaw):
-        return []
     loads = law.load_range[0], law.known_load(entrainment_speed, temperature)
     axes = (
         ("load per length", load, (0.0, loads[1]), loads, LOAD),
@@ -217,34 +215,27 @@ def guessed(law: Law, loads: FloatArray, entrainment_speed: float, temperature: 
     )
 
 
-def heated(
-    contacts: BearingContacts, oil: Lubricant | None, modulus: float, entrainment_speed: float, temperature: float
-) -> str:
-    """A sentence where inlet heating would thin the isothermal films noticeably; empty otherwise.
+def heated(contact: LineContact, oil: Lubricant | None, load: float, entrainment_speed: float, kelvin: float) -> str:
+    """A sentence where heat in the inlet would thin isothermal films noticeably; empty otherwise.
 
     Parameters
     ----------
-    contacts : BearingContacts
-        Contacts with their films.
+    contact : LineContact
+        The contact.
     oil : Lubricant or None
         Oil, whose conductivity has to be known.
-    modulus, entrainment_speed, temperature : float
-        E' [Pa], u [m/s], T [K].
+    load, entrainment_speed, kelvin : float
+        w [N/m], u [m/s], T [K].
     """
-    conductivity = None if oil is None else oil.thermal_conductivity
-    if oil is None or conductivity is None or not math.isfinite(_smallest(contacts.central_film)):
+    if oil is None or oil.thermal_conductivity is None or not load > 0.0 < abs(entrainment_speed):
         return ""
-    try:
-        loading = thermal_loading(viscosity_slope(oil, temperature), entrainment_speed, conductivity)
-        pressure = float(np.max(contacts.hertz_pressure))
-        factor = inlet_shear_heating_factor(pressure, modulus, loading)
-    except InputError:
-        return "films are isothermal and too thick: the inlet heats up by more than the formula of Gupta et al. covers"
+    at = (np.array([value]) for value in (load, abs(entrainment_speed), kelvin))
+    factor = float(inlet_heats(contact, oil, *at).factor[0])
     if factor > _NOTICEABLE:
         return ""
     return (
-        f"films are isothermal: inlet heating makes them about {100.0 * (1.0 - factor):.0f} % thinner at the highest "
-        "pressure (Gupta et al. 1992)"
+        f"films are isothermal: heat in the inlet makes them about {100.0 * (1.0 - factor):.0f} % thinner at the "
+        "highest load"
     )
 
 

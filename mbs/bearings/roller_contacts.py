@@ -28,7 +28,8 @@ from mbs.model.elements import Forces
 
 if TYPE_CHECKING:
     from ehdmaps.maps.kernels.memory import FilmMemory, FilmState
-    from ehdmaps.maps.law import ContactLaw, LawAtPoint
+    from ehdmaps.maps.law import ContactLaw
+    from ehdmaps.maps.law_films import LawAtPoint
 
 
 _STEPS = 100

@@ -25,7 +25,7 @@ from mbs.model.contacts import Contacts, LawSlopes, Slopes, followed, law_slopes
 from mbs.model.relaxation import Relaxation, relaxing
 
 if TYPE_CHECKING:
-    from ehdmaps.maps.law import LawAtPoint
+    from ehdmaps.maps.law_films import LawAtPoint
 
 _SMALL = 1e-10
 """Step of the approach by which the law is differentiated once more [m]."""

@@ -23,15 +23,14 @@ from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import Surface
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.thermal import BearingState
-from mbs.gears.pair import GearPair
-from mbs.model.elements import OnRings, Operation
+from mbs.model.elements import Operation
 from mbs.model.relaxation import Films
 from mbs.model.system import Places, System
 from mbs.model.turning import TurningLoad
 from mbs.scene import kinds
 from mbs.scene.changes import with_clearance, with_supply
 from mbs.scene.contact_laws import NO_LAW, ContactLaws, dry_reason, law_in_force, supply_words, surface_label
-from mbs.scene.gears import mesh_input_problems
+from mbs.scene.gears import axial_problems, mesh_input_problems
 from mbs.scene.kinds import ElementKind
 from mbs.scene.map_set import OTHER_OIL, MapSet, again_from_table
 from mbs.scene.oils import oil_warnings
@@ -139,63 +138,6 @@ def _built(given: _ByContent) -> Body:
 
 AnyBearing: TypeAlias = "BearingElement | LocatingElement"
 """A bearing in a system, of any kind."""
-
-_ROUND_OFF = 1e-9
-
-
-def axial_problems(system: System, pairs: Sequence[GearPair], operation: Operation) -> list[str]:
-    """Name the bodies that helical gears push along x while nothing holds them there.
-
-    Parameters
-    ----------
-    system : System
-        The system that they are in.
-    pairs : sequence of GearPair
-        Gear pairs of the system.
-    operation : Operation
-        Speed at which elements are looked at.
-
-    Notes
-    -----
-    A body with several helical gears may float between their axial forces, and is not looked at.
-    """
-    pushed: dict[str, list[str]] = {}
-    for pair in pairs:
-        for place in (pair.on, pair.against) if pair.helix_angle else ():
-            pushed.setdefault(place.partition(":")[0], []).append(pair.name)
-    return [
-        f"gear pair {names[0]!r}: its helix pushes {body!r} along x, and nothing holds {body!r} there; give it a "
-        "locating bearing, such as a ball bearing, or a spring with a stiffness x, or take x from its freedoms"
-        for body, names in pushed.items()
-        if len(names) == 1 and _free_along_x(system, body, operation)
-    ]
-
-
-def _free_along_x(system: System, body: str, operation: Operation) -> bool:
-    """Tell whether a body moves along x, and neither spring nor bearing resists."""
-    from mbs.gears.gear import GearMesh
-
-    own = np.array([name.partition(".")[0] == body and name.endswith(".x") for name in system.coordinates])
-    moved = own.astype(np.float64)
-    if not np.any(moved) or _resists(system.stiffness, moved):
-        return False
-    still = np.zeros(system.size)
-    for connected in system.elements:
-        if isinstance(connected.element, OnRings) and connected.element.locating:
-            if np.any((connected.transform @ moved)[:1]):
-                return False
-        elif not isinstance(connected.element, GearMesh):
-            stiffness = connected.evaluate(still, still, operation).stiffness
-            if _resists(connected.transform.T @ stiffness @ connected.transform, moved):
-                return False
-    return True
-
-
-def _resists(stiffness: FloatArray, motion: FloatArray) -> bool:
-    """Tell whether a motion of the whole body has a stiffness, beyond the round-off of what bends in it."""
-    inner = float(np.sum(np.abs(motion) @ np.abs(stiffness) @ np.abs(motion)))
-    return float(motion @ stiffness @ motion) > _ROUND_OFF * inner
-
 
 GivenMaps: TypeAlias = "EHDMap | str | Path | Sequence[EHDMap | str | Path] | MapSet | None"
 """What `assemble` takes as maps."""

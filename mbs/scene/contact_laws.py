@@ -23,7 +23,7 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import NO_CENTRIFUGAL
 from mbs.bearings.bearing_force import NO_COUPLED_MEMORY
 from mbs.bearings.films import DryContacts, FilmSource, FormulaFilms, MapFilms
-from mbs.bearings.laws import FORMULAS, DryLaw, Law, TableLaw, curve_problems
+from mbs.bearings.laws import FORMULAS, DryLaw, Law
 from mbs.model.relaxation import DEFAULT_FILMS, FILM_WORDS, Films
 from mbs.scene.map_set import TABLE_LAW, speeds_of_laws, table_maps
 
@@ -46,7 +46,7 @@ _ALLOWED = (
 )
 
 
-def read_law(path: Path, roller_length: float) -> TableLaw:
+def read_law(path: Path, roller_length: float) -> DryLaw:
     """Law of a roller between both raceways from a file of points, held above its last one.
 
     Parameters
@@ -61,7 +61,8 @@ def read_law(path: Path, roller_length: float) -> TableLaw:
     InputError
         With what is wrong about the file, and where.
     """
-    from mbs.scene.columns import read_columns  # laws by points alone need it
+    from mbs.bearings.table_law import TableLaw, curve_problems  # laws by points alone need these
+    from mbs.scene.columns import read_columns
 
     name = f"law table:{path}"
     columns = read_columns(path, _UNITS, _ALLOWED, _MOST, _LONGEST, name)

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import DAMPER, LENGTH, STIFFNESS, Display, closest, short
 from mbs.gears.pair import FEWEST_TEETH, MOST_HARMONICS, MOST_TEETH, STEEPEST, GearPair
-from mbs.model.elements import GROUND, MESH, Input, MeshInput
+from mbs.model.elements import GROUND, MESH, Input, MeshInput, OnRings, Operation
+from mbs.model.system import System
 from mbs.scene import fields
 from mbs.scene.fields import DEGREE, FORCE, MICROMETRE
 from mbs.scene.specs import BodySpec, FlexibleSpec
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
     from mbs.scene.surroundings import Built, Surroundings
 
 _WORDS_HARMONICS = f"a whole number from 0 to {MOST_HARMONICS}, or a list of at most as many numbers, parts of the mean"
+
+_ROUND_OFF = 1e-9
 
 
 def read_gears(section: Table, name: str) -> GearPair | None:
@@ -256,3 +260,57 @@ def _quantities(section: Table, key: str, unit: str, largest: float, display: Di
         for index, part in enumerate(value)
     ]
     return tuple(part if part is not None else 0.0 for part in read)
+
+
+def axial_problems(system: System, pairs: Sequence[GearPair], operation: Operation) -> list[str]:
+    """Name the bodies that helical gears push along x while nothing holds them there.
+
+    Parameters
+    ----------
+    system : System
+        The system that they are in.
+    pairs : sequence of GearPair
+        Gear pairs of the system.
+    operation : Operation
+        Speed at which elements are looked at.
+
+    Notes
+    -----
+    A body with several helical gears may float between their axial forces, and is not looked at.
+    """
+    pushed: dict[str, list[str]] = {}
+    for pair in pairs:
+        for place in (pair.on, pair.against) if pair.helix_angle else ():
+            pushed.setdefault(place.partition(":")[0], []).append(pair.name)
+    return [
+        f"gear pair {names[0]!r}: its helix pushes {body!r} along x, and nothing holds {body!r} there; give it a "
+        "locating bearing, such as a ball bearing, or a spring with a stiffness x, or take x from its freedoms"
+        for body, names in pushed.items()
+        if len(names) == 1 and _free_along_x(system, body, operation)
+    ]
+
+
+def _free_along_x(system: System, body: str, operation: Operation) -> bool:
+    """Tell whether a body moves along x, and neither spring nor bearing resists."""
+    from mbs.gears.gear import GearMesh
+
+    own = np.array([name.partition(".")[0] == body and name.endswith(".x") for name in system.coordinates])
+    moved = own.astype(np.float64)
+    if not np.any(moved) or _resists(system.stiffness, moved):
+        return False
+    still = np.zeros(system.size)
+    for connected in system.elements:
+        if isinstance(connected.element, OnRings) and connected.element.locating:
+            if np.any((connected.transform @ moved)[:1]):
+                return False
+        elif not isinstance(connected.element, GearMesh):
+            stiffness = connected.evaluate(still, still, operation).stiffness
+            if _resists(connected.transform.T @ stiffness @ connected.transform, moved):
+                return False
+    return True
+
+
+def _resists(stiffness: FloatArray, motion: FloatArray) -> bool:
+    """Tell whether a motion of the whole body has a stiffness, beyond the round-off of what bends in it."""
+    inner = float(np.sum(np.abs(motion) @ np.abs(stiffness) @ np.abs(motion)))
+    return float(motion @ stiffness @ motion) > _ROUND_OFF * inner

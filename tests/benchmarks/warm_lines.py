@@ -17,7 +17,7 @@ from scipy.optimize import least_squares
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.heat import thermal_loading, viscosity_slope
+from ehdmaps.physics.heat import viscosity_slope
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.solids import STEEL
@@ -46,7 +46,7 @@ def solved(name: str, celsius: float, loading: float, load_number: float) -> dic
     contact = LineContact("line", RADIUS, STEEL, "half_space", reference_depth=RADIUS)
     T = celsius + 273.15
     state = oil.at(T)
-    speed = math.sqrt(loading / thermal_loading(viscosity_slope(oil, T), 1.0, CONDUCTIVITY))
+    speed = math.sqrt(-loading * CONDUCTIVITY / viscosity_slope(oil, T))
     alpha = state.pressure_viscosity.pressure_viscosity
     one, L = moes_groups(1.0, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
     load = load_number / float(one)

@@ -27,7 +27,7 @@ from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import lifted_loss
 from ehdmaps.maps.kernels.film_response import FilmsOfContact
 from ehdmaps.maps.kernels.locked_film import film_of, fitted_factors, locked_stiffness, response_error
-from ehdmaps.maps.law import LawAtPoint
+from ehdmaps.maps.law_films import LawAtPoint
 from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.hertz import half_width, natural_time
 from ehdmaps.physics.lubricant import Lubricant

@@ -10,8 +10,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ehdmaps.maps.law import LawAtPoint
 from ehdmaps.maps.law_errors import LawBounds, LawChange
+from ehdmaps.maps.law_films import LawAtPoint
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.table.points.response import read_response

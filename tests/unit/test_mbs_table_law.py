@@ -10,7 +10,7 @@ from mbs.analyses.reach import POINTS, axes_outside, source_of
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.laws import TableLaw
+from mbs.bearings.table_law import TableLaw
 from mbs.scene.assembly import assemble
 from mbs.scene.contact_laws import read_law
 from mbs.scene.reader import read_scene

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ehdmaps.errors import InputError
-from ehdmaps.physics import films, heat, hertz, moes
+from ehdmaps.physics import films, hertz, moes
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.contact import LineContact
@@ -185,50 +185,6 @@ def test_damping_constants():
 def test_damping_falls_with_the_film_to_the_power_of_one_and_a_half(film, factor):
     thin, thick = (films.rolling_film_damping(times * film, ETA, RADIUS) for times in (1.0, factor))
     assert thin / thick == pytest.approx(factor**1.5, rel=ROUND_OFF)
-
-
-# --- inlet shear heating ---------------------------------------------------------------------------------
-
-
-def test_no_heating_no_reduction():
-    assert heat.inlet_shear_heating_factor(1e9, MODULUS, 0.0) == 1.0
-    assert heat.thermal_loading(0.0, 10.0, 0.134) == 0.0
-
-
-@given(loading=st.floats(0.0, 10.0), slip=st.floats(0.0, 2.0))
-def test_heating_reduces_the_film(loading, slip):
-    factor = heat.inlet_shear_heating_factor(0.8e9, MODULUS, loading, slip)
-    assert 0 < factor <= 1
-    assert heat.inlet_shear_heating_factor(0.8e9, MODULUS, loading + 0.1, slip) < factor
-    assert heat.inlet_shear_heating_factor(0.8e9, MODULUS, loading + 0.1, slip + 0.1) < factor
-
-
-def test_heating_is_never_clipped():
-    with pytest.raises(InputError, match=r"inlet shear heating: got 13.2 .* = 1\.\d+, outside .*allowed: < 1"):
-        heat.inlet_shear_heating_factor(3e9, MODULUS, 100.0)
-
-
-@pytest.mark.parametrize(
-    ("values", "text"),
-    [
-        ((-1.0, MODULUS, 1.0, 0.0), r"max_pressure: got -1.0; allowed: finite and >= 0"),
-        ((1e9, 0.0, 1.0, 0.0), r"reduced_modulus: got 0.0 Pa; allowed: finite and > 0"),
-        ((1e9, MODULUS, math.nan, 0.0), r"thermal_loading: got nan"),
-        ((1e9, MODULUS, 1.0, -0.1), r"slide_to_roll: got -0.1"),
-    ],
-)
-def test_impossible_heating_input(values, text):
-    with pytest.raises(InputError, match=text):
-        heat.inlet_shear_heating_factor(*values)
-
-
-def test_impossible_thermal_loading():
-    with pytest.raises(InputError) as caught:
-        heat.thermal_loading(1e-3, math.inf, 0.0)
-    slope, speed, conductivity = caught.value.problems
-    assert slope == "viscosity_slope: got 0.001 Pa s/K; allowed: finite and <= 0; check its sign"
-    assert speed == "speed: got inf m/s; allowed: finite"
-    assert conductivity.startswith("conductivity: got 0.0 W/(m K); allowed: finite and > 0")
 
 
 def test_dietl_damping_is_that_of_loaded_contacts():

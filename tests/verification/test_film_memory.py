@@ -12,7 +12,7 @@ import pytest
 
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.maps.kernels.memory_table import equilibrium_at
-from ehdmaps.maps.law import LawAtPoint
+from ehdmaps.maps.law_films import LawAtPoint
 from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.solution import natural_to_hertz
 from ehdmaps.physics.spectrum import contact_spectrum

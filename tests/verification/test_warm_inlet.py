@@ -23,7 +23,7 @@ from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.newton import CONVERGED
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.solver import ReynoldsSolver
-from ehdmaps.physics.heat import heat_by_factor, inlet_heat_factor, thermal_loading, viscosity_slope
+from ehdmaps.physics.heat import heat_by_factor, inlet_heat_factor, viscosity_slope
 from ehdmaps.physics.isotherm import LINEAR, Isotherm
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ellipse import Ellipse, curvature_ratio
@@ -161,7 +161,7 @@ def test_wilson_and_sheu(load: float, speed: float, celsius: float) -> None:
     W. R. D. Wilson, S. Sheu, Journal of Lubrication Technology 105, 1983, 187-188.
     """
     kelvin = celsius + 273.15
-    loading = thermal_loading(viscosity_slope(OIL, kelvin), speed, 0.134)
+    loading = -viscosity_slope(OIL, kelvin) * speed**2 / 0.134
     warm, cold = (
         ReynoldsSolver(physics=physics).solve_line(CONTACTS[0], OIL, (load,), speed, kelvin)[0].mass_flow
         for physics in ("thermal", "isothermal")

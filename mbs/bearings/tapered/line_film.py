@@ -19,7 +19,8 @@ from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from mbs.bearings.locating.normal_law import NormalLaw, PairLaw, on_rows
 
 if TYPE_CHECKING:
-    from ehdmaps.maps.law import ContactLaw, LawAtPoint
+    from ehdmaps.maps.law import ContactLaw
+    from ehdmaps.maps.law_films import LawAtPoint
 
 NODES, KNEE = 1200, 0.3e-6
 """Nodes, and the width about approach zero in which they lie dense: films begin to carry there [m]."""
