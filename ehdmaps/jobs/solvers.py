@@ -177,7 +177,7 @@ _TOLERANCE = "tolerance of Newton's last step, whose convergence is quadratic"
 _FLOW = "stress of thin films, or all of it with the pressure across the film"
 _COLUMNS = "cells along the film; even, as half of them are the grid of the error estimate"
 _START = "start of a point: its Reynolds solution, which also places the cells, or the dry contact"
-_TIMEOUT = "seconds after which a point, all grids together, is stopped and failed"
+_TIMEOUT = "seconds, waiting for a processor apart, after which a point, all its grids, is stopped and failed"
 SOLVERS: Mapping[str, SolverEntry] = {
     "hertz": SolverEntry((), _hertz),
     "formula": SolverEntry(

@@ -15,7 +15,7 @@ from ehdmaps.openfoam.fields import FilmFields, read_fields
 from ehdmaps.openfoam.installation import Installation
 from ehdmaps.openfoam.parameters import Parameters, Start, Temperatures
 from ehdmaps.openfoam.results import THIN_FILM, FilmTable, Results, read_film, read_results, read_temperatures
-from ehdmaps.openfoam.run import KilledError, RunError, log_tail, run
+from ehdmaps.openfoam.run import KilledError, RunError, TimeLimit, log_tail, run
 from ehdmaps.physics.rheology import NEWTONIAN, wall_stress_note
 from ehdmaps.physics.solution import Status
 
@@ -80,7 +80,7 @@ class GridSolver:
     keep_cases: Path | None = None
 
     def solve(
-        self, parameters: Parameters, name: str, with_fields: bool, end: float, start: Start | None = None
+        self, parameters: Parameters, name: str, with_fields: bool, limit: TimeLimit, start: Start | None = None
     ) -> GridSolution:
         """Run one grid from `start`; where that fails to converge over a grid between, from its own start, on others.
 
@@ -95,8 +95,8 @@ class GridSolver:
             Name of the folder, if cases are kept.
         with_fields : bool
             Whether to read the fields.
-        end : float
-            Time on the clock `time.monotonic` after which a run is stopped [s].
+        limit : TimeLimit
+            Time after which a run is stopped.
         start : Start, optional
             What to start from first, such as the solution on a coarser grid.
 
@@ -119,7 +119,7 @@ class GridSolver:
             tries = [(begun,), *cold, *through, *tries[0 if thin else 1 :]]
         for attempt in tries:
             try:
-                grid = self._in_turn(attempt, name, with_fields, end)
+                grid = self._in_turn(attempt, name, with_fields, limit)
             except RunError as error:
                 if error.status not in TRIED_AGAIN or attempt is tries[-1]:
                     raise
@@ -129,7 +129,7 @@ class GridSolver:
                 return replace(grid, note="; ".join(filter(None, [grid.note, note])))
         raise AssertionError("unreachable: the last try returns or raises")
 
-    def run_case(self, parameters: Parameters, name: str, with_fields: bool, end: float) -> GridSolution:
+    def run_case(self, parameters: Parameters, name: str, with_fields: bool, limit: TimeLimit) -> GridSolution:
         """Run one case; one that was killed from outside is tried a second time.
 
         Parameters
@@ -140,8 +140,8 @@ class GridSolver:
             Name of the folder, if cases are kept.
         with_fields : bool
             Whether to read the fields.
-        end : float
-            Time on the clock `time.monotonic` after which it is stopped [s].
+        limit : TimeLimit
+            Time after which it is stopped.
 
         Raises
         ------
@@ -151,24 +151,24 @@ class GridSolver:
             If no case can be made.
         """
         try:
-            return self._run_once(parameters, name, with_fields, end)
+            return self._run_once(parameters, name, with_fields, limit)
         except KilledError as first:
             self._forget(first)
             try:
-                second = self._run_once(parameters, name, with_fields, end)
+                second = self._run_once(parameters, name, with_fields, limit)
             except KilledError as error:
                 raise RunError(f"killed twice: {error}", case=error.case) from error
             # Its log is gone.
             return replace(second, note=f"solved at the second try, the first {str(first).partition(';')[0]}")
 
-    def _run_once(self, parameters: Parameters, name: str, with_fields: bool, end: float) -> GridSolution:
+    def _run_once(self, parameters: Parameters, name: str, with_fields: bool, limit: TimeLimit) -> GridSolution:
         """One run in a folder of its own."""
         kept = self.keep_cases
         text = replace(parameters, write_fields=with_fields or kept is not None).text()
         folder = f"{name}_{parameters.columns}x{parameters.rows}"
         environment = self.installed.full_environment()
         with working_case(self.installed.template, text, folder, kept) as case:
-            log = run(self.installed.solver, case, environment, end)
+            log = run(self.installed.solver, case, environment, limit)
             try:
                 results = read_results(case)
                 if results.status is Status.CONVERGED and len(results.frequencies) != len(parameters.frequencies):
@@ -184,12 +184,12 @@ class GridSolver:
                 raise RunError(f"{error}; {log_tail(log)}") from error
             raise RunError(f"ehlFoam {status.word}: {reason}; {log_tail(log)}", status, results.iterations)
 
-    def _in_turn(self, grids: tuple[Parameters, ...], name: str, with_fields: bool, end: float) -> GridSolution:
+    def _in_turn(self, grids: tuple[Parameters, ...], name: str, with_fields: bool, limit: TimeLimit) -> GridSolution:
         """Run the last of some grids, from the solution of the one before if there is one."""
         *before, last = grids
         for grid in before:
-            last = replace(last, start=self.run_case(grid, name, False, end).start)
-        return self.run_case(last, name, with_fields, end)
+            last = replace(last, start=self.run_case(grid, name, False, limit).start)
+        return self.run_case(last, name, with_fields, limit)
 
     def _forget(self, error: RunError) -> None:
         """Remove the folder of a failed run after which another one follows, unless cases are kept."""

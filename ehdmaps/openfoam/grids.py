@@ -9,7 +9,7 @@ from typing import TypeVar
 from ehdmaps.arrays import ComplexArray
 from ehdmaps.openfoam.grid_solver import GridSolution, GridSolver
 from ehdmaps.openfoam.parameters import Parameters
-from ehdmaps.openfoam.run import RunError
+from ehdmaps.openfoam.run import RunError, TimeLimit
 
 Number = TypeVar("Number", float, ComplexArray)
 
@@ -79,7 +79,7 @@ class Grids:
 
 
 def with_rows(
-    grids: GridSolver, coarse: GridSolution, fine: Parameters, name: str, with_fields: bool, end: float
+    grids: GridSolver, coarse: GridSolution, fine: Parameters, name: str, with_fields: bool, limit: TimeLimit
 ) -> Grids:
     """Solve a point on the fine grid, and what its rows cost on half the columns.
 
@@ -91,7 +91,7 @@ def with_rows(
         Solution on half the columns and rows.
     fine : Parameters
         Parameters of the fine grid.
-    name, with_fields, end
+    name, with_fields, limit
         The arguments of `GridSolver.solve`.
 
     Raises
@@ -103,15 +103,15 @@ def with_rows(
     """
     halved = replace(fine, columns=fine.columns // 2)
     try:
-        rows = grids.solve(halved, name, False, end, coarse.start)
+        rows = grids.solve(halved, name, False, limit, coarse.start)
     except RunError:
         note = f"not solved on {halved.columns} x {halved.rows} cells: the error of {fine.rows} rows is in the film"
-        return Grids(coarse, grids.solve(fine, name, with_fields, end, coarse.start), note=note)
-    solved = Grids(coarse, grids.solve(fine, name, with_fields, end, rows.start), rows)
+        return Grids(coarse, grids.solve(fine, name, with_fields, limit, coarse.start), note=note)
+    solved = Grids(coarse, grids.solve(fine, name, with_fields, limit, rows.start), rows)
     if not _rows_matter(coarse, rows):
         return solved
     try:
-        twice = grids.solve(replace(halved, rows=2 * fine.rows), name, False, end, rows.start)
+        twice = grids.solve(replace(halved, rows=2 * fine.rows), name, False, limit, rows.start)
     except RunError:
         return replace(solved, note=f"not solved on {halved.columns} x {2 * fine.rows} cells: rows from fewer ones")
     return replace(solved, more_rows=twice)

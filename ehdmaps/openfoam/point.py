@@ -8,7 +8,6 @@ rolling across the long axis.
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -27,7 +26,7 @@ from ehdmaps.openfoam.point_case import (
     read_point_columns,
     read_point_results,
 )
-from ehdmaps.openfoam.run import RunError, log_tail, run
+from ehdmaps.openfoam.run import RunError, TimeLimit, log_tail, run
 from ehdmaps.physics.closed_form import CONTINUUM, NO_CONTINUUM, THICK_NOTE, THIN_FILM_LIMIT, too_thick
 from ehdmaps.physics.hertz import LARGEST_PRESSURE
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
@@ -186,11 +185,11 @@ class OpenFoamPointSolver:
         self, asked: PointParameters, name: str, with_fields: bool
     ) -> tuple[PointResults, PointColumns, FilmFields | None]:
         """One run in a folder of its own."""
-        environment, end = self.installed.full_environment(), time.monotonic() + self.timeout
+        environment, limit = self.installed.full_environment(), TimeLimit(self.timeout)
         mesh = (asked.columns, asked.lines, asked.rows)
         folder = f"{name}_{'x'.join(map(str, mesh))}"
         with working_case(self.installed.template, asked.text(), folder, self.keep_cases) as case:
-            log = run(self.installed.solver, case, environment, end)
+            log = run(self.installed.solver, case, environment, limit)
             try:
                 results = read_point_results(case)
                 if results.status is Status.CONVERGED:

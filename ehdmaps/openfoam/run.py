@@ -7,6 +7,7 @@ import re
 import signal
 import time
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from ehdmaps.errors import SolverError
@@ -25,6 +26,30 @@ SHORTEST = 0.1
 _FROM_OUTSIDE = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 _FRAME = re.compile(r"#\d+\s")
 _FATAL = re.compile(r"FOAM FATAL (?:IO )?ERROR")
+
+
+@dataclass
+class TimeLimit:
+    """Time that a point has, all its runs together, less the time in which these wait for a processor.
+
+    Attributes
+    ----------
+    seconds : float
+        The time [s].
+    began : float
+        When it began, by the clock `time.monotonic` [s].
+    waited : float
+        Time in which its runs waited for a processor so far [s].
+    """
+
+    seconds: float
+    began: float = field(default_factory=time.monotonic)
+    waited: float = 0.0
+
+    @property
+    def left(self) -> float:
+        """Rest of the time, at least a tenth of a second [s]."""
+        return max(self.seconds + self.waited - (time.monotonic() - self.began), SHORTEST)
 
 
 class RunError(SolverError):
@@ -55,7 +80,7 @@ class KilledError(RunError):
     """A run whose process was killed by somebody else; it may be tried again."""
 
 
-def run(program: Path, case: Path, environment: Mapping[str, str], end: float) -> Path:
+def run(program: Path, case: Path, environment: Mapping[str, str], limit: TimeLimit) -> Path:
     """Run a program of OpenFOAM in a case; its log is `log.NAME.logfile` there.
 
     The program ends with this process, however that ends, and with Ctrl-C.
@@ -68,8 +93,8 @@ def run(program: Path, case: Path, environment: Mapping[str, str], end: float) -
         The case folder.
     environment : mapping
         Environment variables of the program.
-    end : float
-        Time on the clock `time.monotonic` after which the program is killed [s].
+    limit : TimeLimit
+        Limit after which it is killed; what it waits for a processor is added to it.
 
     Returns
     -------
@@ -86,14 +111,14 @@ def run(program: Path, case: Path, environment: Mapping[str, str], end: float) -
         On Ctrl-C.
     """
     name = program.name
-    seconds = max(end - time.monotonic(), SHORTEST)
     command = ["setpriv", "--pdeathsig", "KILL", str(program), "-case", str(case)]
     try:
-        runner = Runner(command, name, case, {**environment, "PWD": str(case)}, seconds)
+        runner = Runner(command, name, case, {**environment, "PWD": str(case)}, limit.left)
     except OSError as error:
         raise RunError(f"{name} cannot be started: {error.strerror}; case {case}") from error
     runner.complete()
     child = runner.run
+    limit.waited += child.waited
     code = child.process.returncode
     log = Path(runner.logName())
     tail = log_tail(log)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -20,7 +19,7 @@ from ehdmaps.openfoam.grids import Grids, with_rows
 from ehdmaps.openfoam.installation import Installation, case_problems, installation
 from ehdmaps.openfoam.parameters import FLOWS, Flow, Heat, Mesh, Parameters, Start, isotherms
 from ehdmaps.openfoam.results import FilmTable
-from ehdmaps.openfoam.run import RunError
+from ehdmaps.openfoam.run import RunError, TimeLimit
 from ehdmaps.physics.closed_form import THIN_FILM_LIMIT, HertzSolver, too_thick
 from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.films import film_times_rise, moes_central, rolling_force_of_inlet
@@ -127,7 +126,8 @@ class OpenFoamSolver(ContactSolverDefaults):
     starter : callable, optional
         Gives a start to each point; without one it starts from the dry contact.
     timeout : float
-        Time of a point, all grids together, after which it is stopped and failed [s].
+        Time of a point, all grids together, after which it is stopped and failed, without that in which it waits for a
+        processor [s].
     keep_cases : Path, optional
         Folder in which the cases of all runs are kept, with their fields.
     installed : Installation
@@ -320,7 +320,7 @@ class OpenFoamSolver(ContactSolverDefaults):
         stage, done = "coarse grid", 0
         try:
             fine = self.parameters(contact, lubricant, point, frequencies)
-            end = time.monotonic() + self.timeout  # from here: the first start of a process may compile for minutes
+            limit = TimeLimit(self.timeout)  # from here: the first start of a process may compile for minutes
             short = self._inlet_too_short(contact, point, fine.mesh)
             if short:
                 return FilmSolution(Status.OUTSIDE_VALIDITY, short), None
@@ -328,20 +328,20 @@ class OpenFoamSolver(ContactSolverDefaults):
             name = _case_name(contact, point)
             grids = GridSolver(self.installed, self.keep_cases)
             try:
-                coarse = grids.solve(halved, name, False, end)
+                coarse = grids.solve(halved, name, False, limit)
             except RunError:
                 if self.slide_to_roll == 0.0 or self.starter is None:
                     raise
                 # the solver lets a film slide more and more, if it has the start of one that rolls
                 fine = self.parameters(contact, lubricant, point, frequencies, rolling_start=True)
                 halved = replace(fine, columns=fine.columns // 2, rows=fine.rows // 2)
-                coarse = grids.solve(halved, name, False, end)
+                coarse = grids.solve(halved, name, False, limit)
             done = coarse.results.iterations
             stage = "fine grid"
             if self.physics == THERMAL and self.flow == "thin_film":
-                solved = with_rows(grids, coarse, fine, name, with_fields, end)
+                solved = with_rows(grids, coarse, fine, name, with_fields, limit)
             else:
-                solved = Grids(coarse, grids.solve(fine, name, with_fields, end, coarse.start))
+                solved = Grids(coarse, grids.solve(fine, name, with_fields, limit, coarse.start))
         except InputError as error:
             return FilmSolution(Status.OUTSIDE_VALIDITY, str(error)), None
         except SolverError as error:

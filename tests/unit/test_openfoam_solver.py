@@ -26,9 +26,9 @@ from ehdmaps.openfoam import installation as installed
 from ehdmaps.openfoam.case import CLAIM, PREFIX, claimed, remove_leftovers
 from ehdmaps.openfoam.grid_solver import GridSolution
 from ehdmaps.openfoam.parameters import Temperatures
-from ehdmaps.openfoam.pyfoam import parse
+from ehdmaps.openfoam.pyfoam import parse, waited_for_processor
 from ehdmaps.openfoam.results import FilmTable, Results
-from ehdmaps.openfoam.run import RunError, run
+from ehdmaps.openfoam.run import RunError, TimeLimit, run
 from ehdmaps.openfoam.solver import OpenFoamSolver
 from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
@@ -262,9 +262,9 @@ def test_a_process_that_is_killed_by_somebody_is_tried_again(fake):
 def test_a_program_that_cannot_be_started(fake, tmp_path):
     with pytest.raises(RunError, match=r"none ended with status 127; .*failed to execute"):
         (tmp_path / "case").mkdir()
-        run(tmp_path / "none", tmp_path / "case", os.environ, time.monotonic() + 5.0)
+        run(tmp_path / "none", tmp_path / "case", os.environ, TimeLimit(5.0))
     with pytest.raises(RunError, match=r"ehlFoam cannot be started: No such file or directory; case "):
-        run(fake / "bin" / "ehlFoam", tmp_path / "case", {"PATH": "/none"}, time.monotonic() + 5.0)
+        run(fake / "bin" / "ehlFoam", tmp_path / "case", {"PATH": "/none"}, TimeLimit(5.0))
 
 
 @pytest.mark.parametrize(
@@ -445,6 +445,29 @@ def test_the_time_of_a_point_is_that_of_both_grids(fake):
     openfoam_fake.set_mode(fake, "patient 0.7")
     film = solved(OpenFoamSolver(timeout=1.2))
     assert film.reason.startswith("fine grid: ehlFoam did not end within the 0.")
+
+
+def test_what_a_program_waits_for_a_processor_is_not_of_its_time(fake, tmp_path):
+    """Half a second of work beside three others on one processor: two seconds by the clock, of one that it has."""
+    if waited_for_processor(os.getpid()) == 0.0:
+        pytest.skip("this system does not tell how long a process waits: no /proc/PID/schedstat")
+    program = tmp_path / "works"
+    program.write_text(f"#!{sys.executable}\nimport time\nwhile time.process_time() < 0.5: pass\nprint('End')\n")
+    program.chmod(0o755)
+    (case := tmp_path / "case").mkdir()
+    allowed = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {min(allowed)})
+    others = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(3)]
+    try:
+        begin, limit = time.monotonic(), TimeLimit(1.0)
+        run(program, case, os.environ, limit)
+        assert limit.waited > 0.5
+        assert time.monotonic() - begin > 1.0
+    finally:
+        for other in others:
+            other.kill()
+            other.wait()
+        os.sched_setaffinity(0, allowed)
 
 
 def test_what_is_left_of_a_case_that_ran_by_hand_is_not_copied(fake):
