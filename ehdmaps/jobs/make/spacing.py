@@ -14,6 +14,7 @@ then tell at what share of them that is enough.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -39,11 +40,12 @@ from ehdmaps.physics.solution import ContactSolver, usable_points
 SHARES = (0.25, 0.75)
 """Of the way from one load to the next, where a cell is looked at."""
 
-RANDOM, RAISING, SEED = 100, 60, 20262
+RANDOM, RAISING, SEED = 100, 80, 20262
 """Random points, and how many of them raise the estimate; the others tell how often it is enough."""
 
-WANTED = 0.95
-"""Share of the points that raise it at which the estimate is enough then."""
+WANTED, SURE = 0.95, 0.9
+"""Share of all points at which the estimate is enough then, and how sure that is of any one map: a quantile of the points
+that raise it would fall short of that share in every second map."""
 
 
 @dataclass(frozen=True)
@@ -148,7 +150,7 @@ def with_spacing(dataset: xr.Dataset, job: Job, plan: SpacingPlan, results: Mapp
     around = _around(cells, known.shape)
     ratios = _at_random(plan, field, around, axes, results)
     raised, told = ratios[: len(ratios) * RAISING // RANDOM], ratios[len(ratios) * RAISING // RANDOM :]
-    factors = np.maximum(np.quantile(raised, WANTED, axis=0), 1.0) if len(raised) else np.ones(len(SPACING_ERRORS))
+    factors = np.maximum(bound_of_most(raised), 1.0) if len(raised) else np.ones(len(SPACING_ERRORS))
     errors[:, :, :, moving] = factors[:, None, None, None, None] * around
     variables = {
         name: schema.typed(schema.variable(name), values) for name, values in zip(SPACING_ERRORS, errors, strict=True)
@@ -156,6 +158,30 @@ def with_spacing(dataset: xr.Dataset, job: Job, plan: SpacingPlan, results: Mapp
     shares = np.mean(told <= factors, axis=0).tolist() if len(told) else []
     within = dict(zip((f"{name}_within" for name in SPACING_ERRORS), shares, strict=False))
     return dataset.assign(variables).assign_attrs({"spacing_solver": plan.name, "spacing_points": len(told), **within})
+
+
+def bound_of_most(values: FloatArray) -> FloatArray:
+    """Bound that as good as surely most values keep, whatever their distribution, from some drawn at random.
+
+    The share of all values below the r-th largest of n has a known distribution: it exceeds `WANTED` as often as n values
+    have r or more above their quantile (S. S. Wilks, Ann. Math. Stat. 12 (1941) 91-96). Too few values give the largest.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n, k)
+        Values of k kinds.
+
+    Returns
+    -------
+    ndarray, shape (k,)
+        Bound of each kind.
+    """
+    n, above, rank = len(values), 1.0 - WANTED, 0
+    fewer = 0.0  # how likely so few are above
+    while fewer <= 1.0 - SURE:
+        fewer += math.comb(n, rank) * above**rank * WANTED ** (n - rank)
+        rank += 1
+    return np.asarray(np.sort(values, axis=0)[-max(rank - 1, 1)])
 
 
 def _middles(axis: FloatArray) -> FloatArray:
