@@ -44,8 +44,8 @@ RANDOM, RAISING, SEED = 100, 80, 20262
 """Random points, and how many of them raise the estimate; the others tell how often it is enough."""
 
 WANTED, SURE = 0.95, 0.9
-"""Share of all points at which the estimate is enough then, and how sure that is of any one map: a quantile of the points
-that raise it would fall short of that share in every second map."""
+"""Share of all points at which the estimate is enough then, and how sure that is of any one map: a quantile of the
+points that raise it would fall short of that share in every second map."""
 
 
 @dataclass(frozen=True)
@@ -163,8 +163,9 @@ def with_spacing(dataset: xr.Dataset, job: Job, plan: SpacingPlan, results: Mapp
 def bound_of_most(values: FloatArray) -> FloatArray:
     """Bound that as good as surely most values keep, whatever their distribution, from some drawn at random.
 
-    The share of all values below the r-th largest of n has a known distribution: it exceeds `WANTED` as often as n values
-    have r or more above their quantile (S. S. Wilks, Ann. Math. Stat. 12 (1941) 91-96). Too few values give the largest.
+    The share of all values below the r-th largest of n has a known distribution: it exceeds `WANTED` as often as n
+    values have r or more above their quantile (S. S. Wilks, Ann. Math. Stat. 12 (1941) 91-96). Too few values give the
+    largest.
 
     Parameters
     ----------
