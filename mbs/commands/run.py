@@ -1,25 +1,40 @@
-"""`mbs run`: every analysis for which the scene has a table, with films that `--auto` may choose.
+"""`mbs run`: every analysis for which the scene has a table, and the report, with films that `--auto` may choose.
 
-Results, figures and texts of all of them are written into one folder.
+Results, figures, texts and `report.html` are written into one folder. What will be done, and about how long that
+takes, is said before, on stderr, and again after each analysis.
 """
 
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import importlib
+import math
+import time
 from pathlib import Path
 
 from ehdmaps.choices import texts_of
-from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.errors import AnalysisError, EhdmapsError, InputError
+from ehdmaps.jobs.make.status import duration, tell
 from ehdmaps.outputs import Kind, Output, check_outputs, write_text
 from mbs.analyses.campbell import campbell_problems
+from mbs.analyses.case import Case
+from mbs.analyses.modes import modes
+from mbs.analyses.runup import runups
+from mbs.analyses.statics import statics
+from mbs.commands.cases import load_cases
+from mbs.report.examination import MOST_SPEEDS
+from mbs.scene.assembly import Model
 from mbs.scene.choices import OPTIONS
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
+from mbs.unknowns.held_open import held_open_of
 
 _TOLD_ONCE = ("auto: ", "note: ")
 
 MARK = "mbs run"
+REPORT = "report"
+
 TEXT = Kind("a text of mbs run", (".txt",), lambda path: path.read_bytes().startswith(MARK.encode()))
 """Texts that are replaced only if they were written by this command."""
 
@@ -31,7 +46,10 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     planned = {name: arguments.parse(_words(arguments, scene, name, folder)) for name in _analyses(scene)}
     lines, status = [f"{scene.title}: {', '.join(planned)}"], 0
     refused, told = 0, set[str]()
-    for name, one in planned.items():
+    expected = _expected(planned)
+    tell(f"{MARK} {arguments.scene}: {_plan(expected)}; into {folder}")
+    began = time.monotonic()
+    for count, (name, one) in enumerate(planned.items()):
         try:
             text, found = importlib.import_module(f"mbs.commands.{name}").run(one)
         except (InputError, AnalysisError) as error:
@@ -47,6 +65,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         path = folder / f"{name}.txt"
         write_text(path, f"{MARK} {arguments.scene}: {name}\n{text}\n", TEXT)
         lines.append(f"{path}: written")
+        left = _left(expected, count + 1, time.monotonic() - began)
+        tell(f"{MARK}: {name} done, {count + 1} of {len(planned)}{left}")
     return "\n".join(lines), status
 
 
@@ -61,7 +81,88 @@ def _analyses(scene: Scene) -> list[str]:
             found.append("critical")
     if scene.run_up is not None:
         found.append("runup" if campbell_problems(scene, scene.campbell) else "campbell")
-    return found
+    return [*found, REPORT]
+
+
+def _expected(planned: dict[str, argparse.Namespace]) -> dict[str, float]:
+    """Seconds that each analysis will about take: a trial, times how often its like is done; NaN where none is known.
+
+    A trial is one equilibrium with its modes, and of a run some steps, by their processor time. Tables of laws that are
+    made for it are kept.
+    """
+    expected = dict.fromkeys(planned, math.nan)
+    try:
+        model = load_cases(planned["modes"])[0].model
+        statics(model)
+        began = time.process_time()
+        modes(model)
+        once = time.process_time() - began
+    except EhdmapsError:
+        return expected  # the analyses themselves tell what is wrong
+    banded = planned["modes"].bands in (None, "all")
+    weights = _weights(model, len(held_open_of(model)) if banded else 0)
+    expected |= {name: once * weights[name] for name in planned if name in weights}
+    for name in ("campbell", "runup"):
+        if name in planned:
+            expected[name] = _of_run(model)
+    return expected
+
+
+def _weights(model: Model, unknown: int) -> dict[str, float]:
+    """Cost of each analysis in equilibria with their modes, fitted to the processor time of shipped machines."""
+    scene = model.scene
+    speeds = 0 if scene.sweep is None else scene.sweep.points
+    swept = min(speeds or MOST_SPEEDS, MOST_SPEEDS)
+    return {
+        "statics": 1.0 + 0.6 * unknown,
+        "modes": 2.2,
+        "lsa": 3.5,
+        "sweep": 0.35 * speeds,
+        "critical": 0.45 * speeds,
+        # an error budget of rollers has a law for each of its lines
+        REPORT: 5.0 + 0.45 * swept + (22.0 if model.bearings else 0.0),
+    }
+
+
+_TRIED = (100, 500)
+"""Steps of the two trials of a run; what they differ by is what steps take."""
+
+
+def _of_run(model: Model) -> float:
+    """Seconds that the run of a model will about take; NaN where its trial fails."""
+    course = model.scene.run_up
+    assert course is not None  # there is one where a run is planned
+    step = course.settings.step
+    if course.duration <= _TRIED[-1] * step:
+        return 0.0
+    spent = []
+    for steps in _TRIED:
+        short = dataclasses.replace(course, duration=steps * step)
+        trial = dataclasses.replace(model, scene=dataclasses.replace(model.scene, run_up=short))
+        began = time.process_time()
+        try:
+            runups([Case("", trial, math.nan)])
+        except EhdmapsError:
+            return math.nan
+        spent.append(time.process_time() - began)
+    # parts are made again with twice the step, for its error
+    return 1.1 * max(spent[1] - spent[0], 0.0) * course.duration / (step * (_TRIED[1] - _TRIED[0]))
+
+
+def _plan(expected: dict[str, float]) -> str:
+    """Analyses, and about how long they take."""
+    parts = [f"{name} {duration(value)}" if math.isfinite(value) else name for name, value in expected.items()]
+    known = sum(value for value in expected.values() if math.isfinite(value))
+    return f"{', '.join(parts)}" + (f"; about {duration(known)} in all" if known > 0.0 else "")
+
+
+def _left(expected: dict[str, float], done: int, spent: float) -> str:
+    """Time that the rest will about take, by what is done already."""
+    values = [value if math.isfinite(value) else 0.0 for value in expected.values()]
+    before, after = sum(values[:done]), sum(values[done:])
+    if not before > 0.0 or not after > 0.0:
+        return ""
+    return f", about {duration(after * max(spent / before, 0.0))} left"
 
 
 def _folder(given: str) -> Path:
@@ -87,6 +188,8 @@ def _words(arguments: argparse.Namespace, scene: Scene, name: str, folder: Path)
     if arguments.bands is not None and name not in ("campbell", "runup"):
         words += ["--bands", arguments.bands]
     check_outputs([Output("-o", folder / f"{name}.txt", TEXT)])
+    if name == REPORT:
+        return [*words, "-o", str(folder / f"{name}.html")]
     # The figure of statics is one of rollers.
     figure = ["--plot", str(folder / f"{name}.png")] if name != "statics" or scene.bearings else []
     return [*words, "-o", str(folder / f"{name}.nc"), *figure]

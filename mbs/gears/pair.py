@@ -21,11 +21,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, Problems
+
+if TYPE_CHECKING:
+    from mbs.gears.relief import Relief
 
 FEWEST_TEETH, MOST_TEETH = 5, 10_000
 MOST_HARMONICS = 50
@@ -133,47 +137,8 @@ def angle_of_involute(value: float) -> float:
 _MOST_STEPS = 50
 
 
-def tooth_stiffness(
-    teeth: tuple[int, int],
-    shifts: tuple[float, float] = (0.0, 0.0),
-    helix_angle: float = 0.0,
-    pressure_angle: float = math.radians(20.0),
-) -> float:
-    """Single stiffness c' of a pair of steel teeth for each metre of face width [N/m2], ISO 6336-1, method B.
-
-    Parameters
-    ----------
-    teeth : (int, int)
-        Numbers of teeth z1 <= z2.
-    shifts : (float, float)
-        Profile shifts x1, x2.
-    helix_angle, pressure_angle : float
-        Helix angle, pressure angle of the normal section [rad].
-
-    Notes
-    -----
-    Of solid discs and the basic rack A of ISO 53, under 100 N/mm of specific load and more; below, flanks are softer,
-    (w/100 N/mm)^(1/4). The standard's regression is for x1 >= x2 and -0.5 <= x1 + x2 <= 2.
-
-    Examples
-    --------
-    >>> round(1e-9 * tooth_stiffness((21, 23)), 2)
-    11.85
-    """
-    helix, (x1, x2) = math.cos(helix_angle), shifts
-    one, other = (z / helix**3 for z in teeth)
-    flexibility = 0.04723 + 0.15551 / one + 0.25791 / other
-    flexibility += -0.00635 * x1 - 0.11654 * x1 / one - 0.00193 * x2 - 0.24188 * x2 / other
-    flexibility += 0.00529 * x1**2 + 0.00182 * x2**2
-    rack = (1.0 + 0.5 * (1.2 - _DEDENDUM)) * (1.0 - 0.02 * (20.0 - math.degrees(pressure_angle)))
-    return 1e9 / flexibility * _MEASURED * rack * helix
-
-
-_MEASURED = 0.8
-"""Factor C_M of the standard: what measured teeth have of calculated stiffness."""
-
-_DEDENDUM = 1.25
-"""Dedendum of the basic rack, in modules."""
+_SPECIFIC_LOAD = 1e5
+"""Tangential force for each metre of face width from which on c' does not depend on it [N/m], ISO 6336-1, 9.3.2."""
 
 STIFFNESS_ERROR = 0.1
 """Part by which an estimated stiffness may be off."""
@@ -276,6 +241,10 @@ class GearPair:
         Working centre distance [m]; None: that of the profile shifts.
     tip_diameters : (float, float) or None
         Tip diameters of both gears [m]; None: with the usual clearance.
+    tangential_force : float or None
+        Force on the reference circle under which an estimated stiffness and a relief are told [N]; None: 100 N/mm.
+    relief : Relief or None
+        Relief of the tips; None: involutes up to the tips.
 
     Raises
     ------
@@ -302,6 +271,8 @@ class GearPair:
     profile_shift: tuple[float, ...] = ()
     working_distance: float | None = None
     tip_diameters: tuple[float, float] | None = None
+    tangential_force: float | None = None
+    relief: Relief | None = None
 
     def __post_init__(self) -> None:
         problems = Problems(self._number_problems())
@@ -434,21 +405,49 @@ class GearPair:
 
     @property
     def mean_stiffness(self) -> float:
-        """Mean mesh stiffness of the whole face width [N/m]."""
+        """Mean mesh stiffness of the whole face width [N/m], under the load where tips are relieved."""
+        relieved = 1.0 if self.relief is None else self._under_load[0][0]
+        return relieved * self._unrelieved_stiffness
+
+    @property
+    def load(self) -> float:
+        """Tangential force for each metre of face width under which an estimate is told [N/m]."""
+        return _SPECIFIC_LOAD if self.tangential_force is None else self.tangential_force / self.face_width
+
+    @cached_property
+    def _under_load(self) -> tuple[tuple[float, FloatArray, FloatArray], tuple[float, FloatArray, FloatArray]]:
+        """Mean, amplitudes and phases of stiffness, as parts of that without relief, and of the error by relief [m]."""
+        from mbs.gears.relief import course_under_load, harmonics_of  # where tips are relieved
+
+        assert self.relief is not None
+        angle = self.transverse_pressure_angle
+        pitch = math.pi * self.transverse_module * math.cos(angle)
+        force = self.load * self.face_width / math.cos(angle)
+        course = course_under_load(self.relief, self.contact_ratios, pitch, self._unrelieved_stiffness, force)
+        count = self.harmonics if isinstance(self.harmonics, int) else len(self.harmonics)
+        return harmonics_of(course.stiffness, count), harmonics_of(course.error, count)
+
+    @property
+    def _unrelieved_stiffness(self) -> float:
+        """Mean stiffness of whole lines of contact [N/m]."""
         if self.stiffness is not None:
             return self.stiffness * self.face_width
+        from mbs.gears.teeth import tooth_stiffness  # where it is estimated
+
         (z1, x1), (z2, x2) = sorted(zip(self.teeth, self.shifts, strict=True))
         single = tooth_stiffness((z1, z2), (x1, x2), self.helix_angle, self.pressure_angle)
-        return single * (0.75 * self.contact_ratios[0] + 0.25) * self.face_width
+        softer = min(self.load / _SPECIFIC_LOAD, 1.0) ** 0.25
+        return softer * single * (0.75 * self.contact_ratios[0] + 0.25) * self.face_width
 
     @property
     def estimate(self) -> str:
         """Words on an estimated stiffness and its error; empty where it is given."""
         if self.stiffness is not None:
             return ""
+        under = f"under {1e-3 * self.load:.3g} N/mm" if self.tangential_force else "less below 100 N/mm of load"
         return (
             f"{self.name}: mesh stiffness {1e-9 * self.mean_stiffness / self.face_width:.3g} N/(um mm) by ISO 6336-1, "
-            f"+-{100 * STIFFNESS_ERROR:.0f} %, less below 100 N/mm of load"
+            f"+-{100 * STIFFNESS_ERROR:.0f} %, {under}"
         )
 
     @cached_property
@@ -464,6 +463,8 @@ class GearPair:
     @cached_property
     def series(self) -> FloatArray:
         """Amplitudes and phases for `mbs.gears.gear_kernel`, shape (4, harmonics)."""
+        if self.relief is not None:
+            return self._relieved_series
         parts = (
             self.stiffness_harmonics,
             self.harmonic_phases,
@@ -473,6 +474,23 @@ class GearPair:
         rows = np.zeros((4, max(len(self.stiffness_harmonics), len(self.transmission_error))))
         for row, part in zip(rows, parts, strict=True):
             row[: len(part)] = part
+        return rows
+
+    @property
+    def _relieved_series(self) -> FloatArray:
+        """The same where tips are relieved: stiffness under the load, and the error by relief beside that stated."""
+        (mean, amplitudes, phases), (_, errors, error_phases) = self._under_load
+        given = np.zeros((2, len(self.transmission_error)))
+        given[0], given[1, : len(self.transmission_error_phases)] = (
+            self.transmission_error,
+            self.transmission_error_phases,
+        )
+        rows = np.zeros((4, max(amplitudes.size, given.shape[1])))
+        rows[0, : amplitudes.size], rows[1, : phases.size] = amplitudes / mean, phases
+        whole = np.zeros(rows.shape[1], dtype=np.complex128)
+        whole[: errors.size] = errors * np.exp(1j * error_phases)
+        whole[: given.shape[1]] += given[0] * np.exp(1j * given[1])
+        rows[2], rows[3] = np.abs(whole), np.angle(whole)
         return rows
 
     def _number_problems(self) -> list[str]:
@@ -497,14 +515,20 @@ class GearPair:
             ("stiffness", "N/m^2", False),
             ("damping", "N s/m", True),
             ("backlash", "m", True),
+            ("tangential_force", "N", False),
         ):
             value = getattr(self, name)
-            if value is None and name == "stiffness":
+            if value is None and name in ("stiffness", "tangential_force"):
                 continue
             if not (math.isfinite(value) and (value > 0.0 or (zero and value == 0.0))):
                 problems.append(
                     f"gear pair, {name}: got {value!r} {unit}; allowed: finite and {'>=' if zero else '>'} 0"
                 )
+        if self.relief is not None and (self.tangential_force is None or not isinstance(self.harmonics, int)):
+            problems.append(
+                "gear pair, tip_relief: stands without the load; allowed: with tangential_force, and with a number of "
+                "harmonics"
+            )
         if not math.isfinite(self.phase):
             problems.append(f"gear pair, phase: got {self.phase!r} rad; allowed: finite")
         return problems

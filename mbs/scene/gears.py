@@ -20,6 +20,7 @@ from mbs.scene.fields import DEGREE, FORCE, MICROMETRE
 from mbs.scene.specs import BodySpec, FlexibleSpec
 
 if TYPE_CHECKING:
+    from mbs.gears.relief import Relief
     from mbs.scene.surroundings import Built, Surroundings
 
 _WORDS_HARMONICS = f"a whole number from 0 to {MOST_HARMONICS}, or a list of at most as many numbers, parts of the mean"
@@ -60,6 +61,8 @@ def read_gears(section: Table, name: str) -> GearPair | None:
     shifts = _shifts(section)
     distance = section.quantity("working_distance", "m", 1e-5, 100.0, LENGTH)
     tips = _quantities(section, "tip_diameters", "m", 100.0, LENGTH)
+    force = section.quantity("tangential_force", "N", 1e-3, 1e9, FORCE)
+    relief = _relief(section)
     if (
         len(section.problems) > before
         or on is None
@@ -92,6 +95,8 @@ def read_gears(section: Table, name: str) -> GearPair | None:
             profile_shift=shifts,
             working_distance=distance,
             tip_diameters=tips or None,  # type: ignore[arg-type]  # the pair says how many there are
+            tangential_force=force,
+            relief=relief,
         ),
     )
 
@@ -176,6 +181,19 @@ def _shifts(section: Table) -> tuple[float, ...]:
             return tuple(float(part) for part in numbers)
     section.note("profile_shift", f"got {short(value)}; allowed: x1 and x2, such as [0.3, -0.1], or [x1] alone")
     return ()
+
+
+def _relief(section: Table) -> Relief | None:
+    """Read the relief of the tips; None if absent or wrong."""
+    if "tip_relief" not in section and "relief_length" not in section:
+        return None
+    from mbs.gears.relief import LARGEST, Relief
+
+    amounts = _quantities(section, "tip_relief", "m", LARGEST, MICROMETRE)
+    lengths = _quantities(section, "relief_length", "m", 1.0, LENGTH)
+    if lengths and "tip_relief" not in section:
+        section.note("relief_length", "stands without tip_relief; allowed: with it")
+    return fields.built(section, lambda: Relief(amounts, lengths)) if amounts else None
 
 
 def read_mesh_input(section: Table, name: str, on: str) -> MeshInput:

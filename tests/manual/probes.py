@@ -161,6 +161,8 @@ name = "NAME"
 harmonic_phases = ["0 deg"]
 transmission_error = ["0 um"]
 transmission_error_phases = ["0 deg"]
+tip_relief = ["0 um", "0 um"]
+relief_length = ["1 mm", "1 mm"]
 [[inputs]]
 name = "NAME"
 against = "NAME"

@@ -16,6 +16,7 @@ from ehdmaps.jobs.table import Table
 from mbs.gears.gear import gear_mesh
 from mbs.gears.gear_kernel import TOUCH, flank_force
 from mbs.gears.pair import GearPair, contact_ratio, pair_harmonics
+from mbs.gears.relief import Relief
 from mbs.model.body import Inertia
 from mbs.model.elements import Operation
 from mbs.scene.gears import read_gears, spins_by_teeth
@@ -81,6 +82,8 @@ class TestPair:
             ({"profile_shift": (0.1,), "working_distance": 1.0}, "up to twice the distance without profile shift, 99"),
             ({"tip_diameters": (0.01, 0.2)}, "tip_diameters: got (0.01, 0.2) m; allowed: two, above the base circles"),
             ({"tip_diameters": (0.1,)}, "tip_diameters: got (0.1,) m; allowed: two"),
+            ({"tangential_force": -1.0}, "tangential_force: got -1.0 N; allowed: finite and > 0"),
+            ({"relief": Relief((1e-5, 1e-5))}, "tip_relief: stands without the load; allowed: with tangential_force"),
         ],
     )
     def test_refuses(self, changes, message):
@@ -95,6 +98,13 @@ class TestPair:
         with pytest.raises(InputError) as caught:
             dataclasses.replace(PAIR, module=0.0, damping=-1.0, backlash=-1.0)
         assert len(caught.value.problems) == 3
+
+    def test_refuses_a_relief_that_no_tooth_has(self):
+        for amounts, lengths in (((1e-5,), ()), ((2e-3, 0.0), ()), ((math.nan, 0.0), ())):
+            with pytest.raises(InputError, match=r"gear pair, tip_relief: got .* allowed: two, those of both gears"):
+                Relief(amounts, lengths)
+        with pytest.raises(InputError, match=r"gear pair, relief_length: got .* allowed: two above 0, or none"):
+            Relief((1e-5, 1e-5), (1e-3, 0.0))
 
     def test_few_teeth_need_harmonics_of_their_own(self):
         assert dataclasses.replace(PAIR, teeth=(8, 60), harmonics=(0.2,)).stiffness_harmonics == (0.2,)

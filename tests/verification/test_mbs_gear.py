@@ -8,10 +8,12 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 from mbs.gears.gear import gear_mesh
 from mbs.gears.gear_kernel import TOUCH
 from mbs.gears.pair import GearPair, contact_ratio, pair_harmonics
+from mbs.gears.relief import Relief, course_under_load
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation, Spring
 from mbs.model.equilibrium import equilibrium
@@ -84,6 +86,52 @@ def gear_stage(torque, angle=0.7, pair=PAIR, stiffness=2e8):
     load = Load("torque", "one", np.array([0.0, 0.0, 0.0, torque, 0.0, 0.0]))
     mesh = gear_mesh(pair, (0.0, 0.0, 0.0), place, 1.0, SPIN2)
     return System(bodies, springs, [load], [mesh]), place
+
+
+def lacking(approach, gaps, each, force):
+    """Force of springs that close one after the other, less what is carried."""
+    return each * np.sum(np.maximum(approach - gaps, 0.0)) - force
+
+
+class TestUnderLoad:
+    def test_a_relief_for_the_load_turns_evenly(self):
+        """Harris 1958: linear relief over the double contact, as large as one pair yields, leaves no error."""
+        ratio, pitch, stiffness, force = 1.6, 9e-3, 4e8, 3000.0
+        amount, length = force * ratio / stiffness, 0.6 * pitch
+        relief = Relief((amount, amount), (length, length))
+        for part in (1.0, 0.5):
+            course = course_under_load(relief, (ratio, 0.0), pitch, stiffness, part * force)
+            moved = part * force / (stiffness * course.stiffness) + course.error
+            # round-off; at half the load some of the relief is left as an error
+            assert (np.ptp(moved) < 1e-12 * amount) == (part == 1.0)
+
+    @pytest.mark.parametrize("ratios", [(1.6, 0.0), (1.43, 0.83), (2.2, 1.3)])
+    def test_relief_by_integrating_the_lines_of_contact(self, ratios):
+        """The approach that carries the load, by a root of the force of finely divided lines."""
+        transverse, overlap = ratios
+        pitch, stiffness, force = 9e-3, 4e8, 2500.0
+        amounts, lengths = (12e-6, 5e-6), (2.5e-3, 1.5e-3)
+        course = course_under_load(Relief(amounts, lengths), ratios, pitch, stiffness, force)
+        part, slices = transverse % 1.0, 301 if overlap else 1
+        for k in range(0, course.error.size, course.error.size // 8):
+            gaps = []
+            for lag in overlap * (np.arange(slices) / max(slices - 1, 1) - 0.5) if overlap else [0.0]:
+                s = ((k / course.error.size + lag + 0.5 * part) % 1.0) * pitch
+                while s < transverse * pitch:
+                    from_end = transverse * pitch - s
+                    relief = amounts[1] * max(1.0 - s / lengths[1], 0.0)
+                    gaps.append(relief + amounts[0] * max(1.0 - from_end / lengths[0], 0.0))
+                    s += pitch
+            moved = brentq(lacking, 0.0, 1e-3, (np.array(gaps), stiffness / transverse / slices, force), xtol=1e-15)
+            # slices of the face: 33 there, 301 here
+            assert force / (stiffness * course.stiffness[k]) + course.error[k] == pytest.approx(moved, rel=0.01)
+
+    def test_flanks_are_softer_under_little_load(self):
+        """ISO 6336-1, 9.3.2: (w/100 N/mm)^0.25 below 100 N/mm, none above."""
+        pair = dataclasses.replace(PAIR, stiffness=None)
+        loads = [dataclasses.replace(pair, tangential_force=w * 1e3 * pair.face_width) for w in (25.0, 100.0, 400.0)]
+        factors = [one.mean_stiffness / pair.mean_stiffness for one in loads]
+        np.testing.assert_allclose(factors, [0.25**0.25, 1.0, 1.0], rtol=1e-12)
 
 
 class TestStatics:
