@@ -38,6 +38,7 @@ from mbs.planning.question import at_one_speed, in_time, over_speeds
 from mbs.settings import SweepRange
 from tests.benchmarks.bench_auto_criteria import THERMAL
 from tests.cases.commands import run
+from tests.cases.reports import without_budget
 from tests.unit.test_tapered_scenes import O_PAIR, text
 
 TEXT = (resources.files("mbs") / "systems" / "nu308_rigid.toml").read_text(encoding="utf-8")
@@ -132,13 +133,21 @@ def test_a_decibel_is_twelve_per_cent():
     assert read() is None
 
 
-def test_run_does_what_the_scene_has_tables_for(file, capsys, tmp_path):
-    status, out, _ = run(capsys, "run", file, "--auto", "-o", "out")
+def test_run_does_what_the_scene_has_tables_for(file, capsys, tmp_path, monkeypatch):
+    without_budget(monkeypatch)
+    status, out, err = run(capsys, "run", file, "--auto", "-o", "out")
     assert status == 0
-    assert out.startswith("NU308: rigid shaft on two bearings: statics, modes, lsa\n")
-    assert out.count("inlet heat: on") == 1  # what is the same is told once
+    assert out.startswith("NU308: rigid shaft on two bearings: statics, modes, lsa, report\n")
+    # said before, and how far it is
+    assert re.match(r"mbs run \S+: statics \S+ s, modes .* report .*; about .* in all; into out\n", err)
+    assert re.findall(r"mbs run: (\w+) done, (\d) of 4", err)[-1] == ("report", "4")
+    # what is the same is told once: at the operating speed, and over the speeds of the report
+    assert out.count("inlet heat: on") == 2
     names = {path.name for path in (tmp_path / "out").iterdir()}
-    assert names == {f"{name}.{end}" for name in ("statics", "modes", "lsa") for end in ("nc", "png", "txt")}
+    assert names == {f"{name}.{end}" for name in ("statics", "modes", "lsa") for end in ("nc", "png", "txt")} | {
+        "report.html",
+        "report.txt",
+    }
     (tmp_path / "out" / "modes.txt").write_text("mine")
     assert run(capsys, "run", file, "-o", "out")[0] == 2
     assert (tmp_path / "out" / "modes.txt").read_text() == "mine"
