@@ -49,7 +49,7 @@ COMMANDS = (
     Command("check", turned=0),
     Command("statics", output="-o result.nc"),
     Command("modes", output="-o result.nc", turned=1),
-    Command("lsa", output="-o result.nc"),
+    Command("lsa", output="-o result.nc", turned=0),
     Command("sweep", ("--workers", "1"), output="-o result.nc", turned=1),
     Command("critical", output="-o result.nc", turned=0),
     Command("hammer", ("--hits", "1", "--duration", "20 ms", "--workers", "1"), output="-o result.uff", turned=1),
