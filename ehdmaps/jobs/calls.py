@@ -43,6 +43,7 @@ def generate(
     fresh: bool = False,
     progress: Callable[[int], Progress] | None = None,
     tolerance: float | None = None,
+    check: bool = False,
     corrector: ContactSolver | None = None,
     executor: Executor | None = None,
 ) -> xr.Dataset:
@@ -73,6 +74,8 @@ def generate(
         Share of stiffness, damping and film offset that the contact laws may be wrong by, 0.01 say, at 99 % of random
         points and 95 % of those in the damping valley; the attributes `law_...` say what fresh solves found. It needs
         an output file.
+    check : bool
+        Whether laws that read the film table are held against fresh solves, as those of solved films are.
     corrector : ContactSolver, optional
         Solver in place of the one that the job names in `corrected_by`.
     executor : concurrent.futures.Executor, optional
@@ -97,10 +100,12 @@ def generate(
             raise InputError("tolerance: got one without output; allowed: with an output file, whose laws are checked")
         if unserved(chosen, solvers.complete(made_by or solvers.of_map(chosen))):
             chosen = dataclasses.replace(chosen, backbone="none")
-        return generating.generate_in_memory(chosen, workers, progress, made_by, corrector, executor).dataset
+        return generating.generate_in_memory(
+            chosen, workers, progress, made_by, corrector, executor, check=check
+        ).dataset
     check_outputs([Output("output", Path(output), MAP)], [] if isinstance(job, Job) else [fspath(job)])
     generated = generating.generate(
-        chosen, Path(output), workers, fresh, progress, made_by, corrector, executor, tolerance=tolerance
+        chosen, Path(output), workers, fresh, progress, made_by, corrector, executor, tolerance=tolerance, check=check
     )
     return generated.dataset
 

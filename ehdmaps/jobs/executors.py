@@ -1,4 +1,4 @@
-"""Engines of others that solve the points of a map, by a name on the command line.
+"""Engines of others that solve the points of a map, or compute the cases of an analysis, by a name on the command line.
 
 =======================  ==============================================================================================
 `dask:ADDRESS`           workers of a running dask scheduler, such as `dask:tcp://head:8786`
@@ -7,26 +7,209 @@
 `mpi`                    ranks of `mpiexec -n N python -m mpi4py.futures -m ehdmaps generate ...`
 =======================  ==============================================================================================
 
-What is solved is kept here, in the store of the map. A task that an engine loses is handed out once more; after that,
-and where this process is stopped, the same command goes on. Workers need the same version of ehdmaps and one thread
-each.
+A task carries what it needs by value: no file is read where it runs. What is solved is kept here. A task that an engine
+loses is handed out once more; after that, and where this process is stopped, the same command goes on. Workers need the
+same version of ehdmaps and one thread each.
 """
 
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Iterator
-from concurrent.futures import Executor
-from typing import Any
+import functools
+import os
+import pickle
+from collections import deque
+from collections.abc import Callable, Generator, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
 
 from ehdmaps.errors import InputError
 from ehdmaps.extras import needs
+from ehdmaps.maps.kernels.kept_tables import key_of
+from ehdmaps.outputs import cache_folder, new_part, others_may_write, own_folder
 from ehdmaps.workers import available_cores
 
 ALLOWED = "dask:ADDRESS of a scheduler, such as dask:tcp://head:8786, executorlib:local, executorlib:slurm, mpi"
 
 _ANSWERS_WITHIN = "15s"
 """Time in which a scheduler has to answer."""
+
+MOST_OUT = 2000
+"""Tasks handed out, of an executor of which nobody knows how many workers it has."""
+
+VARIABLE = "EHDMAPS_CASES"
+"""Environment variable that names the folder of `KeptResults`; ``off`` keeps nothing."""
+
+MOST_KEPT = 200
+"""Results that are kept; the oldest ones make room."""
+
+_LOOKS = 1.0
+"""Longest time between two calls of `waited` [s]."""
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+
+
+@dataclass(frozen=True)
+class Lost:
+    """Reason why a task has no result: its executor lost it."""
+
+    reason: str
+
+
+@dataclass(frozen=True)
+class _Raised:
+    """An exception of a task, which is a bug: told apart from one by which an executor says that it lost the task."""
+
+    error: Exception
+
+
+def _caught(function: Callable[[Item], Result], item: Item) -> Result | _Raised:
+    """Run one task where another machine may do it."""
+    try:
+        return function(item)
+    except Exception as error:
+        return _Raised(error)
+
+
+def handed_out(
+    executor: Executor,
+    function: Callable[[Item], Result],
+    items: Sequence[Item],
+    tell: Callable[[str], None],
+    name: Callable[[Item], str],
+    waited: Callable[[], None] = lambda: None,
+) -> Generator[tuple[Item, Result | Lost], None, None]:
+    """Run tasks by an executor; what it loses is handed out once more, then given up for this time.
+
+    Parameters
+    ----------
+    executor : concurrent.futures.Executor
+        What runs them; it stays open.
+    function : callable
+        What is done with each item; it and its result have to be picklable, as the items.
+    items : sequence
+        What the tasks are.
+    tell : callable
+        Told what was lost.
+    name : callable
+        Name of an item, for people.
+    waited : callable
+        Called about once a second.
+
+    Yields
+    ------
+    (item, result or Lost)
+        Items with their results, as these come.
+    """
+    waiting = deque((item, True) for item in items)
+    running: dict[Future[Result | _Raised], tuple[Item, bool]] = {}
+    task: Callable[[Item], Result | _Raised] = functools.partial(_caught, function)
+    try:
+        while waiting or running:
+            while waiting and len(running) < MOST_OUT:
+                try:
+                    future = executor.submit(task, waiting[0][0])
+                except Exception as error:  # of any kind: it is broken, or was shut down
+                    reason = f"the executor takes no task any more ({error!s:.200}); the same command tries again"
+                    yield from ((left, Lost(reason)) for left, _ in waiting)
+                    waiting.clear()
+                    break
+                running[future] = waiting.popleft()
+            done, _ = wait(running, timeout=_LOOKS, return_when=FIRST_COMPLETED)
+            waited()
+            for future in done:
+                item, first = running.pop(future)
+                try:
+                    outcome = future.result()
+                except Exception as error:  # of the executor's own kind, which is not known here
+                    if first:
+                        tell(f"the executor lost {name(item)} ({error!s:.200}): handed out again")
+                        waiting.append((item, False))
+                    else:
+                        reason = f"the executor lost the task twice ({error!s:.200}); the same command tries again"
+                        yield item, Lost(reason)
+                    continue
+                if isinstance(outcome, _Raised):
+                    raise outcome.error
+                yield item, outcome
+    finally:
+        for future in running:
+            future.cancel()
+
+
+class KeptResults:
+    """Results that an engine computed, by their index, until all of a command are there: a killed one goes on.
+
+    Each is kept under a hash over the item, what is done with it, and all code of this distribution, in the user's
+    folder for caches. What is damaged, or what others may have written, is computed again.
+
+    Parameters
+    ----------
+    work : object
+        What is done with each item.
+    items : sequence
+        What it is done with; the result of one that cannot be pickled is not kept.
+    """
+
+    def __init__(self, work: Any, items: Sequence[Any]) -> None:
+        self._paths: list[Path | None] = [None] * len(items)
+        with contextlib.suppress(RuntimeError):  # no home folder
+            if os.environ.get(VARIABLE) != "off":
+                folder = cache_folder("cases", VARIABLE, os.environ)
+                keys = [key_of(work, item) for item in items]
+                self._paths = [folder / f"{key}.pickle" if key else None for key in keys]
+
+    def get(self, index: int) -> Any:
+        """Result of an item; None where there is none that is whole.
+
+        Parameters
+        ----------
+        index : int
+            Number of the item.
+        """
+        path = self._paths[index]
+        if path is None or not path.is_file() or others_may_write(path.parent) or others_may_write(path):
+            return None
+        try:
+            return pickle.loads(path.read_bytes())
+        except Exception:  # a damaged pickle raises anything
+            return None
+
+    def put(self, index: int, result: Any) -> None:
+        """Keep the result of an item; on a full disk, and in a folder that cannot be written, it is not kept.
+
+        Parameters
+        ----------
+        index : int
+            Number of the item.
+        result : object
+            Result of it; picklable.
+        """
+        path = self._paths[index]
+        if path is None:
+            return
+        with contextlib.suppress(OSError):
+            own_folder(path.parent)
+            part, descriptor = new_part(path)
+            try:
+                with os.fdopen(descriptor, "wb") as file:
+                    pickle.dump(result, file, protocol=5)
+                part.replace(path)
+            finally:
+                part.unlink(missing_ok=True)
+            kept = sorted(path.parent.glob("*.pickle"), key=lambda file: file.stat().st_mtime)
+            for old in kept[: max(0, len(kept) - MOST_KEPT)]:
+                old.unlink(missing_ok=True)
+
+    def clear(self) -> None:
+        """Remove the results: all are there."""
+        for path in self._paths:
+            if path is not None:
+                with contextlib.suppress(OSError):
+                    path.unlink(missing_ok=True)
 
 
 def executor_problem(text: str) -> str:

@@ -7,8 +7,9 @@ at rest, in the mean with their stiffness (of damping: with their damping) as we
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -20,7 +21,7 @@ from ehdmaps.errors import AnalysisError, InputError, Problems
 from ehdmaps.figures import typeset
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.law_errors import LawChange
-from mbs.analyses.case import Case, Failed, Progress, as_cases, side_by_side
+from mbs.analyses.case import Case, Failed, Progress, Workers, as_cases, side_by_side
 from mbs.analyses.film_errors import notable_from
 from mbs.analyses.operating import held, operating, settled, states_of
 from mbs.analyses.ramp import recorded_run, rehearsed, run_course, silent_run
@@ -313,7 +314,7 @@ def campbell(
     with_modes: bool = False,
     keep_partial: bool = False,
     bands: int = 0,
-    workers: int = 1,
+    workers: Workers = 1,
 ) -> CampbellResult:
     """Run up with each contact law, and compute levels over speed, frequency and order.
 
@@ -334,8 +335,8 @@ def campbell(
     bands : int
         Runs more of each law that states errors, up to `MOST_BANDS`: its stiffness, damping and films are wrong there
         by the bounds of these errors, with all signs in turn (`mbs.analyses.campbell`). Each costs a run.
-    workers : int
-        Number of processes among which the runs are divided.
+    workers : int or concurrent.futures.Executor
+        Number of processes among which the runs are divided, or what computes them in their place.
 
     Raises
     ------
@@ -422,7 +423,7 @@ def _runs(
     with_modes: bool,
     keep_partial: bool,
     bands: int,
-    workers: int,
+    workers: Workers,
 ) -> tuple[list[LawRun], list[str]]:
     """The run of each case, and why some have none; those of its band after it."""
     course = look.course
@@ -438,16 +439,14 @@ def _runs(
     lost: dict[int, str] = {}
     levels: dict[int, list[FloatArray]] = {}
 
-    def work(piece: int, told: Callable[[int], None]) -> _Made | FloatArray:
-        (index, signs), change = pieces[piece], changes[pieces[piece][0]]
-        if signs is None or change is None:
-            return _one(cases[index].model, look, told, with_modes)
-        if index in lost:
-            raise AnalysisError(lost[index])
-        return _sum_levels(_one(with_changed_laws(cases[index].model, change, signs), look, told, False, False).spectra)
-
-    sizes = [each] * len(pieces)
-    made = side_by_side(work, sizes, workers, progress, lambda piece: cases[pieces[piece][0]].label)
+    made = side_by_side(
+        partial(_piece, look, with_modes, lost),
+        [(index, cases[index].model, changes[index], signs) for index, signs in pieces],
+        [each] * len(pieces),
+        workers,
+        progress,
+        lambda piece: cases[pieces[piece][0]].label,
+    )
     stopped: list[str] = []
     try:
         for (index, signs), found in zip(pieces, made, strict=True):
@@ -474,6 +473,22 @@ def _runs(
             if index not in runs and index not in lost
         ]
     return list(runs.values()), [*lost.values(), *stopped]
+
+
+def _piece(
+    look: _Look,
+    with_modes: bool,
+    lost: Mapping[int, str],
+    piece: tuple[int, Model, Changes | None, tuple[float, float, float] | None],
+    told: Callable[[int], None],
+) -> _Made | FloatArray:
+    """The run of a case by its index, or the sum levels of one of its band; none of those whose run has no result."""
+    index, model, change, signs = piece
+    if signs is None or change is None:
+        return _one(model, look, told, with_modes)
+    if index in lost:
+        raise AnalysisError(lost[index])
+    return _sum_levels(_one(with_changed_laws(model, change, signs), look, told, False, False).spectra)
 
 
 def _sum_levels(spectra: Sequence[RunUpSpectra]) -> FloatArray:

@@ -1,7 +1,8 @@
 """Cases that an analysis compares (laws, scenes, models with labels), computed side by side in processes of their own.
 
 A process is a fork of this one: it has the models, and what is imported, from the beginning, and gives back its result
-alone. Where there are no forks, or one process is asked for, cases run one after another in this one.
+alone. Where there are no forks, or one process is asked for, cases run one after another in this one. An executor gets
+each case by value; its results are kept until all are there (`ehdmaps.jobs.executors`).
 """
 
 from __future__ import annotations
@@ -12,12 +13,14 @@ import signal
 import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from typing import Any, Generic, TypeVar
 
 from ehdmaps.errors import AnalysisError, EhdmapsError, InputError
 from ehdmaps.interrupts import deaf_children
+from ehdmaps.program import tell as say
 from ehdmaps.workers import start_worker
 from mbs.scene.assembly import Model
 from mbs.scene.subject import Subject
@@ -93,10 +96,14 @@ def as_cases(models: Model | Case | Sequence[Model | Case]) -> tuple[Case, ...]:
     return cases
 
 
+Item = TypeVar("Item")
 Result = TypeVar("Result")
 
-Work = Callable[[int, Callable[[int], None]], Result]
-"""Computes the result of a case by its index; tells how much of it is done."""
+Work = Callable[[Item, Callable[[int], None]], Result]
+"""Computes the result of a case; tells how much of it is done."""
+
+Workers = int | Executor
+"""Processes that compute cases, or what does in their place."""
 
 _TELL_SECONDS = 0.1
 
@@ -124,9 +131,10 @@ class _Bug:
 
 
 def side_by_side(
-    work: Work[Result],
+    work: Work[Item, Result],
+    items: Sequence[Item],
     sizes: Sequence[int],
-    workers: int,
+    workers: Workers,
     progress: Progress | None,
     label: Callable[[int], str],
 ) -> Iterator[Result | Failed]:
@@ -135,11 +143,13 @@ def side_by_side(
     Parameters
     ----------
     work : callable
-        Computes a case; what it returns has to be picklable.
+        Computes a case; what it returns has to be picklable, and with an executor `work` itself, too.
+    items : sequence
+        What each case is; picklable with an executor.
     sizes : sequence of int
         How much there is to do of each case; one that has ended counts as done.
-    workers : int
-        How many processes at most.
+    workers : int or concurrent.futures.Executor
+        How many processes at most, or what computes cases in their place; it stays open.
     progress : callable, optional
         Called with how much is done of all cases together, in the units of `work`, and how much there is.
     label : callable
@@ -161,13 +171,67 @@ def side_by_side(
     def told(done: int) -> None:
         tell(done, total)
 
-    if min(workers, len(sizes)) <= 1 or "fork" not in multiprocessing.get_all_start_methods():
-        yield from _one_by_one(work, sizes, told)
+    if isinstance(workers, Executor):
+        yield from _by_executor(work, items, sizes, workers, told, label)
         return
-    yield from _Forks(work, sizes, workers, told, label).results()
+    if min(workers, len(sizes)) <= 1 or "fork" not in multiprocessing.get_all_start_methods():
+        yield from _one_by_one(work, items, sizes, told)
+        return
+    yield from _Forks(work, items, sizes, workers, told, label).results()
 
 
-def _one_by_one(work: Work[Result], sizes: Sequence[int], told: Callable[[int], None]) -> Iterator[Result | Failed]:
+def _by_executor(
+    work: Work[Item, Result],
+    items: Sequence[Item],
+    sizes: Sequence[int],
+    executor: Executor,
+    told: Callable[[int], None],
+    label: Callable[[int], str],
+) -> Iterator[Result | Failed]:
+    """Compute all cases by an executor, but those that an earlier run has kept."""
+    from ehdmaps.jobs.executors import KeptResults, Lost, handed_out
+
+    found: dict[int, Result | Failed] = {}
+    kept, whole = KeptResults(work, items), True
+    for index in range(len(items)):
+        if (known := kept.get(index)) is not None:
+            found[index] = known
+    due = [(index, items[index]) for index in range(len(items)) if index not in found]
+    coming = handed_out(executor, _Computed(work), due, say, lambda entry: label(entry[0]))
+    try:
+        for index in range(len(items)):
+            while index not in found:
+                (place, _), result = next(coming)
+                if isinstance(result, Lost):
+                    whole = False
+                    found[place] = Failed(AnalysisError(f"{label(place)}: {result.reason}"))
+                else:
+                    found[place] = result
+                    kept.put(place, result)
+                told(sum(sizes[one] for one in found))
+            yield found[index]
+    finally:
+        coming.close()
+    if whole:
+        kept.clear()
+
+
+@dataclass(frozen=True)
+class _Computed(Generic[Item, Result]):
+    """The work on a case, by its index and itself; an error of this distribution is a result."""
+
+    work: Work[Item, Result]
+
+    def __call__(self, entry: tuple[int, Item]) -> Result | Failed:
+        try:
+            return self.work(entry[1], lambda amount: None)
+        except EhdmapsError as error:
+            return Failed(error)
+
+
+def _one_by_one(
+    work: Work[Item, Result], items: Sequence[Item], sizes: Sequence[int], told: Callable[[int], None]
+) -> Iterator[Result | Failed]:
     """Compute all cases in this process."""
     before = 0
 
@@ -175,9 +239,9 @@ def _one_by_one(work: Work[Result], sizes: Sequence[int], told: Callable[[int], 
         told(before + amount)
 
     found: Result | Failed
-    for index, size in enumerate(sizes):
+    for item, size in zip(items, sizes, strict=True):
         try:
-            found = work(index, tell)
+            found = work(item, tell)
         except EhdmapsError as error:
             found = Failed(error)
         before += size
@@ -185,18 +249,20 @@ def _one_by_one(work: Work[Result], sizes: Sequence[int], told: Callable[[int], 
         yield found
 
 
-class _Forks(Generic[Result]):
+class _Forks(Generic[Item, Result]):
     """Processes that compute cases."""
 
     def __init__(
         self,
-        work: Work[Result],
+        work: Work[Item, Result],
+        items: Sequence[Item],
         sizes: Sequence[int],
         workers: int,
         told: Callable[[int], None],
         label: Callable[[int], str],
     ) -> None:
-        self._work, self._sizes, self._workers, self._told, self._label = work, sizes, workers, told, label
+        self._work, self._items, self._sizes = work, items, sizes
+        self._workers, self._told, self._label = workers, told, label
         self._context = multiprocessing.get_context("fork")
         self._said = self._context.Value("b", False)
         self._running: dict[int, _Running] = {}
@@ -226,7 +292,7 @@ class _Forks(Generic[Result]):
         while self._next < len(self._sizes) and len(self._running) < self._workers:
             ours, theirs = self._context.Pipe(duplex=False)
             process = self._context.Process(
-                target=_compute, args=(self._work, self._next, theirs, self._said), daemon=True
+                target=_compute, args=(self._work, self._items[self._next], theirs, self._said), daemon=True
             )
             with deaf_children(signal.SIGTERM), warnings.catch_warnings():
                 # Of threads that a fork leaves behind none is needed in it.
@@ -269,7 +335,7 @@ class _Forks(Generic[Result]):
         self._told(sum(self._done))
 
 
-def _compute(work: Work[Result], index: int, pipe: Connection, said: Any) -> None:
+def _compute(work: Work[Item, Result], item: Item, pipe: Connection, said: Any) -> None:
     """Compute a case in a process of its own."""
     start_worker(said)
     last = -_TELL_SECONDS
@@ -283,7 +349,7 @@ def _compute(work: Work[Result], index: int, pipe: Connection, said: Any) -> Non
 
     found: Any
     try:
-        found = work(index, told)
+        found = work(item, told)
     except EhdmapsError as error:
         found = Failed(error)
     except Exception as error:  # a bug, which the parent raises

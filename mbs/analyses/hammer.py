@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ehdmaps.errors import AnalysisError, InputError
-from mbs.analyses.case import Case, Failed, Progress, side_by_side, silent
+from mbs.analyses.case import Case, Failed, Progress, Workers, side_by_side, silent
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating
 from mbs.analyses.soundness import findings_at_rest, with_findings
@@ -199,7 +199,7 @@ def hammers(
     settings: HammerSettings | None = None,
     progress: Progress | None = None,
     *,
-    workers: int = 1,
+    workers: Workers = 1,
 ) -> Hammers:
     """Hit one scene with several laws, each with the same heights and noise.
 
@@ -211,8 +211,8 @@ def hammers(
         How each is hit. A duration that is left out is that of each law's own slowest mode.
     progress : callable, optional
         Told how many hits are done, and of how many, over all laws.
-    workers : int
-        Number of processes among which the laws are divided.
+    workers : int or concurrent.futures.Executor
+        Number of processes among which the laws are divided, or what computes them in their place.
 
     Raises
     ------
@@ -245,7 +245,8 @@ def hammers(
             lost(index, error)
     places = list(prepared)
     made = side_by_side(
-        lambda place, told: _hit(prepared[places[place]], told),
+        _hit,
+        list(prepared.values()),
         [_size(prepared[index]) for index in places],
         workers,
         progress,

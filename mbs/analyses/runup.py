@@ -6,6 +6,7 @@ import dataclasses
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import xarray as xr
@@ -13,7 +14,7 @@ import xarray as xr
 from ehdmaps.compiling import cpu_seconds
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.units import RPM
-from mbs.analyses.case import Case, Failed, Progress, side_by_side, silent
+from mbs.analyses.case import Case, Failed, Progress, Workers, side_by_side, silent
 from mbs.analyses.operating import held, states_of
 from mbs.analyses.ramp import course_of
 from mbs.analyses.reach import fade_of
@@ -212,7 +213,7 @@ def runups(
     progress: Progress | None = None,
     *,
     keep_partial: bool = False,
-    workers: int = 1,
+    workers: Workers = 1,
     states: bool = True,
 ) -> RunUps:
     """Integrate the run of one scene with several laws.
@@ -225,8 +226,8 @@ def runups(
         Told how many steps are done, and of how many, over all laws.
     keep_partial : bool
         Whether Ctrl-C returns the laws that have come to the end, if there are any; else it is raised.
-    workers : int
-        Number of processes among which the laws are divided.
+    workers : int or concurrent.futures.Executor
+        Number of processes among which the laws are divided, or what computes them in their place.
     states : bool
         Whether the motion of all coordinates is kept, as for `runup`.
 
@@ -252,7 +253,8 @@ def runups(
     runs: dict[int, RunUpResult] = {}
     failed: list[str] = []
     made = side_by_side(
-        lambda index, told: _run(cases[index].model, told, states=states),
+        partial(_run, states=states),
+        [case.model for case in cases],
         sizes,
         workers,
         progress,

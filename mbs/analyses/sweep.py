@@ -7,7 +7,7 @@ import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -17,7 +17,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.figures import typeset
 from ehdmaps.units import RPM
-from mbs.analyses.case import Case, Failed, Progress, as_cases, side_by_side
+from mbs.analyses.case import Case, Failed, Progress, Workers, as_cases, side_by_side
 from mbs.analyses.film_errors import notable_from
 from mbs.analyses.losses import losses_over_speed
 from mbs.analyses.operating import operating, settled, states_of
@@ -210,7 +210,7 @@ def sweep(
     models: Model | Case | Sequence[Model | Case],
     settings: SweepSettings | None = None,
     progress: Progress | None = None,
-    workers: int = 1,
+    workers: Workers = 1,
 ) -> SweepResult:
     """Sweep over speed.
 
@@ -222,8 +222,8 @@ def sweep(
         Speeds and cage angles; the speeds of the scene if left out.
     progress : callable, optional
         Told how many models are done, and of how many.
-    workers : int
-        Number of processes among which the models are divided.
+    workers : int or concurrent.futures.Executor
+        Number of processes among which the models are divided, or what computes them in their place.
 
     Raises
     ------
@@ -249,7 +249,8 @@ def sweep(
     cases = tuple(dataclasses.replace(case, model=model) for case, model in zip(cases, models, strict=True))
     found: list[Sweep] = []
     for entry in side_by_side(
-        lambda index, _: _one(cases[index], speeds, settings.cage_angles),
+        partial(_one, speeds, settings.cage_angles),
+        cases,
         [1] * len(cases),
         workers,
         progress,
@@ -280,7 +281,7 @@ def sweep_problems(scene: Scene) -> list[str]:
     ]
 
 
-def _one(case: Case, speeds: SweepRange, cage_angles: int) -> Sweep:
+def _one(speeds: SweepRange, cage_angles: int, case: Case, _: Callable[[int], None]) -> Sweep:
     """Sweep one model."""
     scene = case.model.scene
     try:

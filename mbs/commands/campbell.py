@@ -11,9 +11,8 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, Problems
 from ehdmaps.units import RPM
-from ehdmaps.workers import available_cores
 from mbs.analyses.campbell import MOST_BANDS, MOST_DAMPED, CampbellResult, LawRun, campbell, campbell_problems, fading
-from mbs.analyses.case import Case
+from mbs.analyses.case import Case, Workers
 from mbs.analyses.film_errors import film_course
 from mbs.analyses.ramp import resolution, step_lines
 from mbs.analyses.reach import axes_outside, fade_lines, outside_lines, sources_of
@@ -23,7 +22,7 @@ from mbs.analyses.step_error import StepCheck
 from mbs.commands.auto import analysed
 from mbs.commands.campbell_recorded import measured_lines, measured_run, read_look, recorded_runs, signal_problems
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Looked, Told, write, write_plot
+from mbs.commands.common import Looked, Told, chosen_workers, write, write_plot
 from mbs.linearised.sweep_result import ComplexSweep, Sweep
 from mbs.model.elements import Sensor
 from mbs.output.campbell_table import (
@@ -49,8 +48,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Run up with each law, and compare; or look at runs that are recorded."""
     if is_time_data(arguments.scene):
         return recorded_runs(arguments)
-    workers = arguments.workers or available_cores()
-    done = analysed(arguments, _asked, lambda asked: _ran(asked, arguments.modes, workers), _looks_at)
+    with chosen_workers(arguments) as workers:
+        done = analysed(arguments, _asked, lambda asked: _ran(asked, arguments.modes, workers), _looks_at)
     found, tolerated, beside = done.result.run, done.result.tolerated, done.result.measured
     settings, runs, course, bands = found.settings, found.runs, found.course, int(arguments.bands or "0")
     judged = Judged([(entry.case.label, entry.findings) for entry in runs])
@@ -99,7 +98,7 @@ class _Ran(NamedTuple):
     measured: RecordedRun | None
 
 
-def _ran(asked: _Asked, with_modes: bool, workers: int) -> _Ran:
+def _ran(asked: _Asked, with_modes: bool, workers: Workers) -> _Ran:
     """Run up, with step and slices that are chosen where a tolerance is given."""
 
     def run(cases: list[Case]) -> tuple[CampbellResult, StepCheck | None]:

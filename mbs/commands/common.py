@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -47,6 +49,27 @@ def read_band(arguments: argparse.Namespace, problems: list[str]) -> dict[str, A
         )
     }
     return {name: value for name, value in found.items() if value is not None}
+
+
+@contextlib.contextmanager
+def chosen_workers(arguments: argparse.Namespace) -> Iterator[int | Executor]:
+    """Processes of this machine that compute cases, or the engine that is named in their place, open in the block.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Arguments, with `workers` and `executor`.
+
+    Raises
+    ------
+    InputError
+        If the engine is unknown, or does not answer.
+    """
+    from ehdmaps.jobs.executors import named_executor
+    from ehdmaps.workers import available_cores
+
+    with named_executor(arguments.executor, arguments.workers) as executor:
+        yield (arguments.workers or available_cores()) if executor is None else executor
 
 
 R = TypeVar("R")

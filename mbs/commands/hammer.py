@@ -11,14 +11,13 @@ from ehdmaps.errors import InputError, Problems
 from ehdmaps.extras import lacking
 from ehdmaps.outputs import Output, check_outputs, output_problems
 from ehdmaps.units import quantity
-from ehdmaps.workers import available_cores
 from mbs.analyses.case import Case
 from mbs.analyses.hammer import HIGHEST, HammerResult, HammerSettings, hammer_problems, hammers
 from mbs.analyses.reach import outside_at, source_of
 from mbs.analyses.soundness import Judged
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Looked, Told
+from mbs.commands.common import Looked, Told, chosen_workers
 from mbs.linearised.modes import Modes
 from mbs.modal.uff import UFF, Measurement, write_uff
 from mbs.model.relaxation import FILM_WORDS
@@ -33,14 +32,14 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Hit with each law, and write the records, a file a law."""
     highest, duration = _options(arguments)
     settings = HammerSettings(highest, duration, arguments.hits, arguments.noise, arguments.seed, arguments.nonlinear)
-    workers = arguments.workers or available_cores()
     told = Told("hit") if arguments.nonlinear else None
-    done = analysed(
-        arguments,
-        _asked,
-        lambda cases: (hammers(cases, settings, told, workers=workers), [case.label for case in cases]),
-        lambda cases: _looks_at(cases, highest),
-    )
+    with chosen_workers(arguments) as workers:
+        done = analysed(
+            arguments,
+            _asked,
+            lambda cases: (hammers(cases, settings, told, workers=workers), [case.label for case in cases]),
+            lambda cases: _looks_at(cases, highest),
+        )
     found, labels = done.result
     paths = dict(zip(labels, _files(arguments.output, len(labels)), strict=True))
     judged = Judged([(label, entry.findings) for label, entry in zip(found.labels, found.results, strict=True)])

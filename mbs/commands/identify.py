@@ -14,7 +14,7 @@ from ehdmaps.outputs import FIGURE, Output, output_problems, write_text
 from ehdmaps.units import quantity
 from mbs.analyses.modes import modes
 from mbs.commands.cases import load_model
-from mbs.commands.common import Told, read_cage_angles, write
+from mbs.commands.common import Told, chosen_workers, read_cage_angles, write
 from mbs.commands.scenes.new import NEW
 from mbs.identification.explained import MOST_CHI2
 from mbs.identification.found import Identified
@@ -40,7 +40,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     if arguments.plan:
         unknowns, steps = identify_plan(model, arguments.free, _speeds(arguments), angles, _progress)
         return "\n".join([*head, *plan_lines(unknowns, steps)]), 0
-    found = identify(model, measured, arguments.free, angles, progress=_progress)
+    with chosen_workers(arguments) as workers:
+        found = identify(model, measured, arguments.free, angles, progress=_progress, workers=workers)
     poor = found.fit.chi2 > MOST_CHI2
     lines = [*head, *(f"  {note}" for note in notes), *found_lines(found), *apart_lines(found, would_tell(found))]
     if poor:

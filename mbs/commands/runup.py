@@ -13,8 +13,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, Problems
 from ehdmaps.figures import COLOURS
 from ehdmaps.units import RPM, closest
-from ehdmaps.workers import available_cores
-from mbs.analyses.case import Case
+from mbs.analyses.case import Case, Workers
 from mbs.analyses.film_errors import film_course
 from mbs.analyses.ramp import resolution, silent_run, step_lines
 from mbs.analyses.reach import POINTS, Fade, axes_outside, fade_lines, fade_of, outside_lines, source_of, sources_of
@@ -25,7 +24,7 @@ from mbs.analyses.step_error import StepCheck
 from mbs.commands.auto import analysed
 from mbs.commands.campbell_recorded import OF_A_SPEED, read_source, signal_problems
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Looked, Told, out_of_place, read_band, read_option, write
+from mbs.commands.common import Looked, Told, chosen_workers, out_of_place, read_band, read_option, write
 from mbs.output.files import described
 from mbs.output.model_text import heading, held_lines
 from mbs.output.result_text import drive_lines, energy_lines, signal_lines
@@ -70,14 +69,14 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Run with each law, and say what was found; or look at a recorded run."""
     if is_time_data(arguments.scene):
         return _recorded(arguments)
-    workers = arguments.workers or available_cores()
-    done = analysed(
-        arguments,
-        _asked,
-        # The file has the motion of all coordinates, which is many times what all else takes.
-        lambda asked: _ran(asked, workers, states=bool(arguments.output)),
-        lambda asked: _looks_at(asked.cases[0].model.scene),
-    )
+    with chosen_workers(arguments) as workers:
+        done = analysed(
+            arguments,
+            _asked,
+            # The file has the motion of all coordinates, which is many times what all else takes.
+            lambda asked: _ran(asked, workers, states=bool(arguments.output)),
+            lambda asked: _looks_at(asked.cases[0].model.scene),
+        )
     found, asked, tolerated = done.result
     names = tuple(label if found.runs[1:] else entry.model.label for label, entry in _pairs(found))
     data = _signals(found, names)
@@ -100,7 +99,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     return "\n".join(lines), 1 if outside or found.failed else 0
 
 
-def _ran(asked: _Asked, workers: int, *, states: bool) -> tuple[RunUps, _Asked, Tolerated | None]:
+def _ran(asked: _Asked, workers: Workers, *, states: bool) -> tuple[RunUps, _Asked, Tolerated | None]:
     """Run, with step and slices that are chosen where a tolerance is given."""
 
     def run(cases: list[Case]) -> tuple[RunUps, StepCheck | None]:

@@ -12,7 +12,6 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, Problems
 from ehdmaps.units import DAMPER, RPM, SPRING, quantity
-from ehdmaps.workers import available_cores
 from mbs.analyses.case import Case
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating
@@ -21,7 +20,7 @@ from mbs.analyses.soundness import Judged
 from mbs.analyses.sweep import SweepSettings, sweep, sweep_problems, waterfall_problems
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Looked, read_cage_angles, with_bands, write, write_plot
+from mbs.commands.common import Looked, chosen_workers, read_cage_angles, with_bands, write, write_plot
 from mbs.linearised.linear import response_display
 from mbs.linearised.modes import free_motions
 from mbs.linearised.sweep_result import Sweep, exchanged
@@ -51,13 +50,13 @@ _LEAST_ASSURANCE = 0.5
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Sweep over speed."""
-    workers = arguments.workers or available_cores()
-    done = analysed(
-        arguments,
-        lambda given: _Asked(*_read(given)),
-        lambda asked: sweep(asked.cases, asked.settings, workers=workers),
-        _looks_at,
-    )
+    with chosen_workers(arguments) as workers:
+        done = analysed(
+            arguments,
+            lambda given: _Asked(*_read(given)),
+            lambda asked: sweep(asked.cases, asked.settings, workers=workers),
+            _looks_at,
+        )
     result = done.result
     banded = with_bands(arguments, []) and len(result.cases) == 1 and result.cases[0].model.scene.has_bearings
     cases, found = result.cases, result.sweeps

@@ -20,11 +20,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
+from mbs.analyses.case import Failed, Workers, side_by_side
 from mbs.identification.machine import changed
 from mbs.identification.search import Fit
 from mbs.scene.changes import cutoff_of, with_cutoff, with_damping_ratio, with_loads
@@ -159,7 +161,9 @@ def covariance(jacobian: FloatArray, width: FloatArray) -> tuple[FloatArray, Flo
     return deviation * width, inverse / np.maximum(np.outer(deviation, deviation), 1e-300)
 
 
-def certainty(fit: Fit, progress: Callable[[int, int], None] = lambda done, total: None) -> Certainty:
+def certainty(
+    fit: Fit, progress: Callable[[int, int], None] = lambda done, total: None, workers: Workers = 1
+) -> Certainty:
     """Find how well the unknowns of a fit are known.
 
     Parameters
@@ -168,6 +172,8 @@ def certainty(fit: Fit, progress: Callable[[int, int], None] = lambda done, tota
         The fit.
     progress : callable
         Told how many trials are done, and of how many.
+    workers : int or concurrent.futures.Executor
+        Number of processes among which the trials are divided, or what computes them in their place.
     """
     question = fit.question
     deviation, correlation = covariance(fit.jacobian, question.width)
@@ -177,21 +183,26 @@ def certainty(fit: Fit, progress: Callable[[int, int], None] = lambda done, tota
     asked = list(assumptions(question.scene, [one.group for one in question.free], fit))
     # Looks at another viscosity are looks at another temperature, which is found.
     warm = "viscosity" if any(one.name == "temperature" for one in question.free) else None
-    progress(0, len(asked))
-    for k, unknown in enumerate(asked):
-        try:
-            trial, reason = _tried(fit, solved, unknown, warm == unknown.group)
-        except KeyboardInterrupt:
-            words = f"stopped before {len(asked) - k} of {len(asked)} assumptions were tried"
-            return Certainty(deviation, correlation, tuple(trials), fit.chi2, (*lost, words), stopped=True)
-        trials += [trial] if trial is not None else []
-        lost += [reason] if reason else []
-        progress(k + 1, len(asked))
+    work, sizes, tried = partial(_tried, fit, solved, warm), [1] * len(asked), 0
+    try:
+        for found in side_by_side(work, asked, sizes, workers, progress, lambda k: asked[k].name):
+            if isinstance(found, Failed):
+                raise found.error
+            tried += 1
+            trial, reason = found
+            trials += [trial] if trial is not None else []
+            lost += [reason] if reason else []
+    except KeyboardInterrupt:
+        words = f"stopped before {len(asked) - tried} of {len(asked)} assumptions were tried"
+        return Certainty(deviation, correlation, tuple(trials), fit.chi2, (*lost, words), stopped=True)
     return Certainty(deviation, correlation, tuple(trials), fit.chi2, tuple(lost))
 
 
-def _tried(fit: Fit, solved: FloatArray, unknown: Unknown, warmth: bool) -> tuple[Trial | None, str]:
+def _tried(
+    fit: Fit, solved: FloatArray, warm: str | None, unknown: Unknown, _: Callable[[int], None]
+) -> tuple[Trial | None, str]:
     """Shifts by an assumption, None where the machine cannot be so, and what could not be tried of it, in words."""
+    warmth = warm == unknown.group
     ways = [_warmth(fit, scene) if warmth else _shift(fit, solved, scene) for scene in unknown.looks]
     shifts = [one for one in ways if one is not None]
     reason = ""

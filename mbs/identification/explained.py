@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.units import Display
+from mbs.analyses.case import Workers
 from mbs.identification.free import Free
 from mbs.identification.measured import MeasuredResponses
 from mbs.identification.search import Fit, Question, search
@@ -108,7 +109,7 @@ class OtherLaw:
         return NOT_TOLD
 
 
-def damper(fit: Fit, progress: Callable[[int, int], None] = lambda done, total: None) -> OtherLaw:
+def damper(fit: Fit, progress: Callable[[int, int], None] = lambda done, total: None, workers: Workers = 1) -> OtherLaw:
     """Fit the same data by dry contacts with a constant damper.
 
     Parameters
@@ -117,6 +118,8 @@ def damper(fit: Fit, progress: Callable[[int, int], None] = lambda done, total: 
         The fit by films.
     progress : callable
         Told how much is done.
+    workers : int or concurrent.futures.Executor
+        Number of processes, or what computes in their place.
     """
     question = fit.question
     kept = [k for k, one in enumerate(question.free) if one.name not in ("temperature", "alpha")]
@@ -132,7 +135,7 @@ def damper(fit: Fit, progress: Callable[[int, int], None] = lambda done, total: 
     )
     free = (*(_begun(question.free[k], fit.values[k]) for k in kept), time)
     asked = Question(question.machine, question.scene, free, question.measured)
-    found = search(asked, starts=3, kept=2, progress=progress)
+    found = search(asked, starts=3, kept=2, progress=progress, workers=workers)
     return OtherLaw(fit.chi2, found.chi2, found.values[-1], fit.count)
 
 

@@ -25,12 +25,14 @@ import dataclasses
 import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, Problems, closest, short
+from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import DAMPER, SPRING, Display, quantity
 from mbs.model.body import FREEDOMS
 from mbs.scene.changes import with_clearance_of, with_damping_ratio, with_temperature
@@ -52,6 +54,50 @@ WIDEST_CLEARANCE = 60e-6
 """Largest clearance of a range that is not stated [m]."""
 
 Change = Callable[[Scene, float], Scene]
+"""Makes the scene with another value of an unknown; it goes to other processes, and so is a function of a module."""
+
+
+def _unchanged(scene: Scene, _: float) -> Scene:
+    """The scene of an unknown that it has no part in."""
+    return scene
+
+
+def _with_clearance(name: str, scene: Scene, value: float) -> Scene:
+    """The scene with another clearance of a bearing."""
+    return with_clearance_of(scene, name, value)
+
+
+def _with_alpha(oil: Lubricant, temperature: float, scene: Scene, factor: float) -> Scene:
+    """The scene with another pressure-viscosity of its oil, stated at a temperature."""
+    other = oil if factor == 1.0 else oil.with_alpha(factor, temperature)
+    if other is None:
+        raise InputError("--free: got 'alpha' of an oil whose numbers are as measured; allowed: of other oils")
+    return dataclasses.replace(scene, lubricant=other)
+
+
+def _with_force(name: str, force: FloatArray, size: float, scene: Scene, value: float) -> Scene:
+    """The scene with another size of a load."""
+    changed = (value / size) * force
+    loads = [dataclasses.replace(one, force=changed) if one.name == name else one for one in scene.loads]
+    return dataclasses.replace(scene, loads=loads)
+
+
+def _with_spring(name: str, kind: str, freedom: int, scene: Scene, value: float) -> Scene:
+    """The scene with another stiffness or damping of a spring along one freedom."""
+    springs = []
+    for one in scene.springs:
+        if one.name == name:
+            matrix = np.array(getattr(one, kind))
+            matrix[freedom, freedom] = value
+            change: dict[str, Any] = {kind: matrix}
+            one = dataclasses.replace(one, **change)  # noqa: PLW2901
+        springs.append(one)
+    return dataclasses.replace(scene, springs=springs)
+
+
+def _with_damping(name: str, scene: Scene, value: float) -> Scene:
+    """The scene with another damping ratio of a body."""
+    return with_damping_ratio(scene, name, value)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -90,7 +136,7 @@ class Free:
     low: float
     high: float
     start: float
-    change: Change = lambda scene, _: scene
+    change: Change = _unchanged
     log: bool = False
     prior: tuple[float, float] | None = None
     group: str = ""
@@ -259,7 +305,7 @@ def _of_clearance(scene: Scene, entry: Any) -> Free:
         low=0.0,
         high=max(WIDEST_CLEARANCE, 3.0 * own),
         start=max(own, 0.0),
-        change=lambda changed, value: with_clearance_of(changed, name, value),
+        change=partial(_with_clearance, name),
         prior=known_beforehand(scene, "clearance", name, own),
         group="clearance",
         of=name,
@@ -289,13 +335,7 @@ def _of_alpha(scene: Scene) -> Free:
     oil, temperature = scene.lubricant, scene.temperature
     if oil is None:
         raise InputError("--free: got 'alpha'; the scene has no [lubricant]")
-
-    def change(changed: Scene, factor: float) -> Scene:
-        other = oil if factor == 1.0 else oil.with_alpha(factor, temperature)
-        if other is None:
-            raise InputError("--free: got 'alpha' of an oil whose numbers are as measured; allowed: of other oils")
-        return dataclasses.replace(changed, lubricant=other)
-
+    change = partial(_with_alpha, oil, temperature)
     change(scene, ALPHAS[-1])
     stated = tolerance_of(scene, "pressure_viscosity")
     part = ALPHA_KNOWN if stated is None or stated.exact else stated.size / math.sqrt(3.0)
@@ -320,14 +360,6 @@ def _of_force(scene: Scene, load: Any) -> Free:
     if not size > 0.0:
         raise InputError(f"--free: got '{load.name}.force'; the load has no force")
     name = load.name
-
-    def change(changed: Scene, value: float) -> Scene:
-        loads = [
-            dataclasses.replace(one, force=(value / size) * load.force) if one.name == name else one
-            for one in changed.loads
-        ]
-        return dataclasses.replace(changed, loads=loads)
-
     group = "preload" if "preload" in name.lower() else "load"
     unit = "N" if np.any(load.force[:3]) else "N m"
     return Free(
@@ -337,7 +369,7 @@ def _of_force(scene: Scene, load: Any) -> Free:
         low=size / 5.0,
         high=5.0 * size,
         start=size,
-        change=change,
+        change=partial(_with_force, name, load.force, size),
         log=True,
         prior=_relative(known_beforehand(scene, group, "", size)),
         group=group,
@@ -361,13 +393,6 @@ def _of_spring(spring: Any, kind: str, freedom: str, words: str) -> Iterator[Fre
         raise InputError(f"--free: got {short(words)}; {spring.name} couples its freedoms; allowed: of springs without")
     name, wide = spring.name, 5.0 if kind == "stiffness" else 20.0
     for k in wanted:
-
-        def change(scene: Scene, value: float, k: int = k) -> Scene:
-            changed = np.array(next(getattr(one, kind) for one in scene.springs if one.name == name))
-            changed[k, k] = value
-            springs = [_sprung(one, kind, changed) if one.name == name else one for one in scene.springs]
-            return dataclasses.replace(scene, springs=springs)
-
         own, plain = float(matrix[k, k]), "N/m" if kind == "stiffness" else "N s/m"
         turning = "N m/rad" if kind == "stiffness" else "N m s/rad"
         shown = SPRING if kind == "stiffness" else DAMPER
@@ -378,32 +403,22 @@ def _of_spring(spring: Any, kind: str, freedom: str, words: str) -> Iterator[Fre
             low=own / wide,
             high=wide * own,
             start=own,
-            change=change,
+            change=partial(_with_spring, name, kind, k),
             log=True,
         )
-
-
-def _sprung(spring: Any, kind: str, matrix: FloatArray) -> Any:
-    """A spring with another stiffness or damping."""
-    return dataclasses.replace(spring, **{kind: matrix})
 
 
 def _of_body(body: Any) -> Free:
     """The damping ratio of a shaft or a flexible body."""
     if not body.damping_ratio > 0.0:
         raise InputError(f"--free: got '{body.name}.damping_ratio'; the scene states none to begin with")
-    name = body.name
-
-    def change(scene: Scene, value: float) -> Scene:
-        return with_damping_ratio(scene, name, value)
-
     return Free(
-        name=f"{name}.damping_ratio",
+        name=f"{body.name}.damping_ratio",
         unit="1",
         display=Display("%", 100.0),
         low=body.damping_ratio / 10.0,
         high=min(10.0 * body.damping_ratio, 0.5),
         start=body.damping_ratio,
-        change=change,
+        change=partial(_with_damping, body.name),
         log=True,
     )

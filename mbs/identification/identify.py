@@ -12,6 +12,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.units import quantity
+from mbs.analyses.case import Workers
 from mbs.analyses.operating import settled
 from mbs.identification.certainty import certainty
 from mbs.identification.explained import damper, wrong_channels
@@ -50,6 +51,7 @@ def identify(
     cage_angles: int = CAGE_ANGLES,
     seed: int = 0,
     progress: Progress = _silent,
+    workers: Workers = 1,
 ) -> Identified:
     """Find unknowns of a machine from frequency responses or modes.
 
@@ -70,6 +72,8 @@ def identify(
         Seed of the random starts.
     progress : callable, optional
         Makes a callable that is told how much of a part is done, by its name.
+    workers : int or concurrent.futures.Executor
+        Number of processes among which starts and trials are divided, or what computes them in their place.
 
     Raises
     ------
@@ -85,14 +89,14 @@ def identify(
         raise InputError("identify: got nothing measured; allowed: responses or modes, of one speed at least")
     looked, unknowns = _asked(model, [one.speed for one in measured], free, cage_angles, _highest(measured))
     question = Question(looked, looked.model.scene, unknowns, tuple(measured))
-    fit = search(question, STARTS, seed=seed, progress=progress("look"))
+    fit = search(question, STARTS, seed=seed, progress=progress("look"), workers=workers)
     if wrong := wrong_channels(fit):
         raise InputError([f"{one.channel}: {one.words}; state it as it was measured" for one in wrong])
-    sure = certainty(fit, progress("assumption"))
+    sure = certainty(fit, progress("assumption"), workers)
     other = None
     if looked.model.has_films and not (fit.stopped or sure.stopped):
         with contextlib.suppress(KeyboardInterrupt):  # what was found is kept
-            other = damper(fit, progress("look"))
+            other = damper(fit, progress("look"), workers)
     return Identified(fit, sure, other)
 
 

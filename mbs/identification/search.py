@@ -15,12 +15,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 from scipy.optimize import least_squares
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import AnalysisError, InputError
+from mbs.analyses.case import Failed, Workers, side_by_side
 from mbs.identification.free import Free
 from mbs.identification.machine import Machine, looked
 from mbs.identification.measured import Measured, MeasuredModes, MeasuredResponses
@@ -250,6 +252,7 @@ def search(
     kept: int = KEPT,
     seed: int = 0,
     progress: Progress = lambda done, total: None,
+    workers: Workers = 1,
 ) -> Fit:
     """Find the unknowns.
 
@@ -265,6 +268,8 @@ def search(
         Seed of these.
     progress : callable
         Told how much is done, and of how much.
+    workers : int or concurrent.futures.Executor
+        Number of processes among which the starts are divided, or what computes them in their place.
 
     Returns
     -------
@@ -280,35 +285,65 @@ def search(
     count = len(question.free)
     places = [question.start, *rng.uniform(0.05, 0.95, (starts, count))]
     total = len(places) + 2 * kept
-    progress(0, total)
     coarse, fine = question.thinned(COARSE), question.thinned(FINE)
     scored, stands = [], False
-    for k, place in enumerate(places):
-        looks = coarse.looks(place)
-        stands = stands or any(look is not None for look in looks)
-        scored.append((_score(coarse.residuals_of(looks, place, WIDENED)), k))
-        progress(k + 1, total)
+    looks = side_by_side(
+        partial(_looked, coarse),
+        places,
+        [1] * len(places),
+        workers,
+        lambda done, _: progress(done, total),
+        lambda k: f"start {k + 1}",
+    )
+    for k, look in enumerate(looks):
+        if isinstance(look, Failed):
+            raise look.error
+        scored.append((look[0], k))
+        stands = stands or look[1]
     if not stands:
         raise AnalysisError("no equilibrium at any start: look at `mbs statics` of the scene, and at the ranges")
     found: list[tuple[float, FloatArray]] = []
     stopped = False
-    for n, (_, k) in enumerate(sorted(scored)[:kept]):
-        try:
-            first = _refined(coarse, places[k], WIDENED, 1.0)
-            progress(len(places) + 2 * n + 1, total)
-            second = _refined(fine, first, 0.0, 3.0)
-        except KeyboardInterrupt:
-            if not found:
-                raise
-            stopped = True
-            break
-        found.append((float(np.sum(_soft(fine.residuals(second)))), second))
-        progress(len(places) + 2 * n + 2, total)
+    chosen = [places[k] for _, k in sorted(scored)[:kept]]
+    refined = side_by_side(
+        partial(_twice_refined, coarse, fine),
+        chosen,
+        [2] * len(chosen),
+        workers,
+        lambda done, _: progress(len(places) + done, total),
+        lambda n: f"refinement {n + 1}",
+    )
+    try:
+        for one in refined:
+            if isinstance(one, Failed):
+                raise one.error
+            found.append(one)
+    except KeyboardInterrupt:
+        if not found:
+            raise
+        stopped = True
     found.sort(key=lambda one: one[0])
     best = found[0][1]
     residuals, jacobian = jacobian_at(fine, best)
     same = sum(bool(np.max(np.abs(place - best)) < 0.02) for _, place in found)
     return Fit(fine, best, residuals, jacobian, tuple(cost for cost, _ in found), same, stopped)
+
+
+def _looked(question: Question, place: FloatArray, _: Callable[[int], None]) -> tuple[float, bool]:
+    """Score of a start, and whether the machine has an equilibrium there."""
+    looks = question.looks(place)
+    score = _score(question.residuals_of(looks, place, WIDENED))
+    return score, any(look is not None for look in looks)
+
+
+def _twice_refined(
+    coarse: Question, fine: Question, place: FloatArray, told: Callable[[int], None]
+) -> tuple[float, FloatArray]:
+    """The place at which the search from a start ends, and its cost."""
+    first = _refined(coarse, place, WIDENED, 1.0)
+    told(1)
+    second = _refined(fine, first, 0.0, 3.0)
+    return float(np.sum(_soft(fine.residuals(second)))), second
 
 
 def _soft(residuals: FloatArray) -> FloatArray:

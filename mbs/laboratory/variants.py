@@ -11,6 +11,7 @@ import contextlib
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ import xarray as xr
 
 from ehdmaps.arrays import FloatArray, variable
 from ehdmaps.errors import AnalysisError, InputError, Problems
-from mbs.analyses.case import Failed, Progress, side_by_side
+from mbs.analyses.case import Failed, Progress, Workers, side_by_side
 from mbs.analyses.operating import held
 from mbs.analyses.ramp import recorded_run, run_course, silent_run
 from mbs.analyses.sensors import followed_orders
@@ -164,7 +165,7 @@ def variants(
     progress: Progress | None = None,
     *,
     keep_partial: bool = False,
-    workers: int = 1,
+    workers: Workers = 1,
 ) -> VariantsResult:
     """Run up with two laws, and again with each single change; compare the sum levels of all acceleration sensors.
 
@@ -184,8 +185,8 @@ def variants(
         Told how many steps are done, and of how many, over all runs.
     keep_partial : bool
         Whether Ctrl-C returns the changes that have come to the end, if there are any; else it is raised.
-    workers : int
-        Number of processes among which the runs are divided.
+    workers : int or concurrent.futures.Executor
+        Number of processes among which the runs are divided, or what computes them in their place.
 
     Raises
     ------
@@ -302,12 +303,13 @@ def _made(
     settings: CampbellSettings,
     progress: Progress | None,
     keep_partial: bool,
-    workers: int,
+    workers: Workers,
 ) -> list[_Outcome]:
     """Make all runs, side by side; fewer where they were stopped."""
     found: list[_Outcome] = []
     outcomes = side_by_side(
-        lambda index, told: _outcome(runs[index], sensors, settings, told),
+        partial(_outcome, sensors, settings),
+        runs,
         [run.samples for run in runs],
         workers,
         progress,
@@ -324,7 +326,7 @@ def _made(
 
 
 def _outcome(
-    run: _Run, sensors: tuple[Sensor, ...], settings: CampbellSettings, told: Callable[[int], None]
+    sensors: tuple[Sensor, ...], settings: CampbellSettings, run: _Run, told: Callable[[int], None]
 ) -> _Outcome:
     """Make a run."""
     try:

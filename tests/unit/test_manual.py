@@ -332,7 +332,7 @@ def test_the_defaults_of_correction_points_and_checked_maps():
     assert job == dataclasses.replace(parse_job(f"{with_points}correction_points = 16\n", "job", "job"), text=job.text)
     batch = '[batch]\nbearings = ["NU308"]\noils = ["FVA3"]\n'
     rest = f'schema = 1\n{AXES}\n[solver]\nname = "hertz"\nstructural_law = "iso16281"\n'
-    checked = [parse_batch(f"schema = 1\n{batch}{line}{rest[11:]}", "b", "b").checked for line in ("", "checked = 3\n")]
+    checked = [parse_batch(f"schema = 1\n{batch}{line}{rest[11:]}", "b", "b").checked for line in ("", "checked = 0\n")]
     assert checked[0] == checked[1]
 
 

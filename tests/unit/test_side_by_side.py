@@ -32,7 +32,7 @@ def name(index):
 @pytest.mark.parametrize("workers", [1, 3])
 def test_results_are_the_same_in_the_same_order(workers):
     told = []
-    found = list(side_by_side(square, [2] * 6, workers, lambda done, total: told.append((done, total)), name))
+    found = list(side_by_side(square, range(6), [2] * 6, workers, lambda done, total: told.append((done, total)), name))
     assert [value for _, value in found] == [0, 1, 4, 9, 16, 25]
     assert len({pid for pid, _ in found}) == (1 if workers == 1 else 6)
     assert (os.getpid() in {pid for pid, _ in found}) == (workers == 1)
@@ -47,7 +47,7 @@ def test_errors_of_this_distribution_are_results(workers):
             raise InputError(["one problem", "another"])
         return index
 
-    found = list(side_by_side(work, [1, 1, 1], workers, None, name))
+    found = list(side_by_side(work, range(3), [1, 1, 1], workers, None, name))
     assert isinstance(found[1], Failed)
     assert isinstance(found[1].error, InputError)
     assert found[1].error.problems == ("one problem", "another")
@@ -60,7 +60,7 @@ def test_other_exceptions_are_bugs(workers):
         raise ZeroDivisionError("nobody thought of it")
 
     with pytest.raises(ZeroDivisionError, match="nobody thought of it"):
-        list(side_by_side(work, [1, 1, 1], workers, None, name))
+        list(side_by_side(work, range(3), [1, 1, 1], workers, None, name))
 
 
 def test_a_process_that_dies_costs_its_own_case():
@@ -69,7 +69,7 @@ def test_a_process_that_dies_costs_its_own_case():
             os.kill(os.getpid(), signal.SIGKILL)
         return index
 
-    found = list(side_by_side(work, [1, 1, 1], 2, None, name))
+    found = list(side_by_side(work, range(3), [1, 1, 1], 2, None, name))
     assert found[::2] == [0, 2]
     assert isinstance(found[1].error, AnalysisError)
     assert str(found[1].error) == (
@@ -84,7 +84,7 @@ def test_leaving_early_ends_all():
             time.sleep(60.0)
         return os.getpid()
 
-    found = side_by_side(work, [1, 1, 1], 3, None, name)
+    found = side_by_side(work, range(3), [1, 1, 1], 3, None, name)
     begin = time.monotonic()
     next(found)
     found.close()
@@ -100,7 +100,7 @@ def work(index, told):
     time.sleep(60.0)
 
 try:
-    list(side_by_side(work, [1, 1], 2, None, str))
+    list(side_by_side(work, range(2), [1, 1], 2, None, str))
 except KeyboardInterrupt:
     print("stopped", flush=True)
 """

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
+from importlib import resources
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +15,10 @@ from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import MapError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.make import law_check
 from ehdmaps.jobs.make.generate import Generated, generate, generate_in_memory, not_served
 from ehdmaps.jobs.make.law_check import EDGE_SHARE, REFUSED
+from ehdmaps.jobs.make.report import films_lines, law_lines
 from ehdmaps.jobs.make.table_films import unserved
 from ehdmaps.jobs.show.describe import describe
 from ehdmaps.maps import schema
@@ -30,7 +34,9 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import contact_solution
-from ehdmaps.table.file import film_table
+from ehdmaps.table.checked import FILE, checked_text
+from ehdmaps.table.file import CHECKSUM, film_table, shipped_tables
+from tests.benchmarks import table_checked
 
 BEARING = estimate("NU206")
 CONTACTS = BEARING.contacts(STEEL, "iso16281")
@@ -118,7 +124,12 @@ def test_a_law_of_the_table_is_that_of_fresh_solves() -> None:
 def test_a_map_of_the_table_has_no_lines_and_all_laws(tmp_path: Path) -> None:
     checked = job(law_check=20)
     assert _why(checked) == ""
-    made = generate(checked, tmp_path / "nu206.nc", workers=1)
+    plain = generate(checked, tmp_path / "plain.nc", workers=1)
+    assert plain.sweep.solved == 0  # its laws are held against the table, which was held against fresh solves
+    told = "\n".join([*law_lines(plain.dataset), *films_lines(plain.dataset)])
+    assert "at random points against the film table" in told and "against fresh solves at 1200 random points" in told
+    assert plain.dataset.attrs["law_damping_within_bar"] == 1.0
+    made = generate(checked, tmp_path / "nu206.nc", workers=1, check=True)
     assert made.backbone is None
     # the check of its laws, within the map and beyond both kinds of edges, and nothing else
     assert made.sweep.solved == 20 + 2 * round(EDGE_SHARE * 20)
@@ -138,6 +149,39 @@ def test_a_map_of_the_table_has_no_lines_and_all_laws(tmp_path: Path) -> None:
     with pytest.raises(MapError, match="was changed"):
         tampered.dataset.to_netcdf(tmp_path / "other.nc")
         open_map(tmp_path / "other.nc")
+
+
+@pytest.mark.slow
+def test_the_record_of_the_release_is_what_a_check_finds() -> None:
+    """The bound, 5 % of each quantile: round-off of solves whose Newton steps end at 1e-6 or so of a film."""
+    record = json.loads((resources.files("ehdmaps.table") / FILE).read_text())
+    name, made = next(iter(table_checked.jobs()))
+    row, found = record["maps"][name], table_checked.checked(made)
+    assert row.keys() == found.keys()
+    for key, value in found.items():
+        if key.endswith("_error"):
+            assert numbers(value) == pytest.approx(numbers(row[key]), rel=0.05), key
+        else:
+            assert value == row[key]
+
+
+def numbers(text: str) -> list[float]:
+    """Median, quantiles and largest of an attribute."""
+    return [float(part.split()[-1]) for part in text.split(",")]
+
+
+def test_the_shipped_table_has_a_record() -> None:
+    checksum = shipped_tables().attributes[CHECKSUM]
+    assert "1200 random points of 12 maps" in checked_text(checksum)
+    assert checked_text("of another table") == ""
+
+
+@pytest.mark.parametrize(("misses", "served"), [(0, True), (2, True), (4, True), (8, False)])
+def test_a_map_is_not_solved_for_misses_that_chance_has(misses, served, monkeypatch) -> None:
+    """Of films that miss a bar at 1 % of all points, 4 and more of 100 points miss it once in 54 draws, 8 in 1e5."""
+    rows = [(None, None, "", number < misses) for number in range(100)]
+    monkeypatch.setattr(law_check, "_between", lambda *_: iter(rows))
+    assert law_check.films_met(None, None, {}) is served
 
 
 @pytest.mark.slow

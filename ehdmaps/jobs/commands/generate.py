@@ -56,6 +56,7 @@ def _batch(source: str, arguments: argparse.Namespace) -> tuple[str, int]:
         "JOB": len(arguments.jobs) > 1,
         "--keep-cases": arguments.keep_cases is not None,
         "--law-tolerance": arguments.law_tolerance is not None,
+        "--check (say checked = 3 in [batch])": arguments.check,
         '--fresh-films (say films = "solved" in [solver])': arguments.fresh_films,
     }
     problems = Problems(
@@ -148,7 +149,16 @@ def _made(
     corrector = _built(by.solver, by.options, kept) if by else None
     try:
         generated = generate(
-            job, output, arguments.workers, arguments.fresh, progress, solver, corrector, executor, tolerance=tolerance
+            job,
+            output,
+            arguments.workers,
+            arguments.fresh,
+            progress,
+            solver,
+            corrector,
+            executor,
+            tolerance=tolerance,
+            check=arguments.check,
         )
     except KeyboardInterrupt:
         tell(f"\nstopped; what is solved is kept in {store_path(output)}: the same command goes on from there")

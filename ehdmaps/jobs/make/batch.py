@@ -49,7 +49,8 @@ LONGEST_NAME = 120
 SUMMARY = "summary.csv"
 """File with the table of all maps of a batch, in their folder."""
 
-DEFAULT_CHECKED = 3
+DEFAULT_CHECKED = 0
+"""Maps of one oil whose laws are checked where a batch says nothing: those of the film table were when it was made."""
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9.+-]*")
 _NAMES = "letters, digits, '.', '+' and '-', beginning with a letter or a digit"

@@ -174,6 +174,7 @@ def generate(
     executor: Executor | None = None,
     within: Within | None = None,
     tolerance: float | None = None,
+    check: bool = False,
 ) -> Generated:
     """Make a map; what its store has already is taken over.
 
@@ -201,6 +202,8 @@ def generate(
     tolerance : float, optional
         Share of stiffness, damping and film offset that the contact laws may be wrong by, in place of the usual bars of
         their check: lines that are solved are laid more closely until they keep it.
+    check : bool
+        Whether laws that read the film table are held against fresh solves, as solved ones are in any case.
 
     Raises
     ------
@@ -208,7 +211,7 @@ def generate(
         With what to do; everything solved is kept.
     """
     chosen_solver = _solver(job, solver)
-    planned = _plan(job, chosen_solver, _corrector(job, corrector), tolerance)
+    planned = _plan(job, chosen_solver, _corrector(job, corrector), tolerance, check)
     processes = workers or available_cores()
     with ExitStack() as stack:
         if within is None:
@@ -252,12 +255,13 @@ def generate_in_memory(
     solver: ContactSolver | None = None,
     corrector: ContactSolver | None = None,
     executor: Executor | None = None,
+    check: bool = False,
 ) -> Generated:
     """Make a map without a file and without a store: what is not finished is lost.
 
     Arguments and errors as of `generate`.
     """
-    planned = _plan(job, _solver(job, solver), _corrector(job, corrector))
+    planned = _plan(job, _solver(job, solver), _corrector(job, corrector), solves=check)
 
     result = SweepResult()
 
@@ -304,7 +308,7 @@ def read_map(job: Job, output: Path, attributes: Mapping[str, str | int]) -> xr.
     MapError
         If it cannot be written.
     """
-    planned = _plan(job, solvers.of_map(job), None)
+    planned = _plan(job, solvers.of_map(job), None, solves=True)
     if not planned.from_table:
         return None
     result = sweep(planned.everything, NoStore(), 1)
@@ -378,9 +382,9 @@ class _Plan:
     @property
     def everything(self) -> tuple[LineTask, ...]:
         """All tasks, in the order in which they are solved."""
-        parts = (self.refined, self.check)
+        lines = self.refined.tasks if self.refined else ()
         besides = self.spacing.besides(self.tasks) if self.spacing else ()
-        return (*self.tasks, *(task for part in parts if part for task in part.tasks), *besides)
+        return (*self.tasks, *lines, *(self.check.to_solve if self.check else ()), *besides)
 
     @property
     def points(self) -> int:
@@ -403,10 +407,16 @@ def _corrector(job: Job, instead: ContactSolver | None) -> ContactSolver | None:
     return solvers.complete(instead or solvers.build(by.solver, by.options))
 
 
-def _plan(job: Job, solver: ContactSolver, corrector: ContactSolver | None, tolerance: float | None = None) -> _Plan:
-    """Lay out what is to be solved."""
+def _plan(
+    job: Job,
+    solver: ContactSolver,
+    corrector: ContactSolver | None,
+    tolerance: float | None = None,
+    solves: bool = False,
+) -> _Plan:
+    """Lay out what is to be solved; `solves` says whether laws of the film table are held against fresh solves."""
     if not (why := unserved(job, solver)):
-        return _Plan(job, solver, corrector, (), None, plan_check(job, solver, tolerance), from_table=True)
+        return _Plan(job, solver, corrector, (), None, plan_check(job, solver, tolerance, solves), from_table=True)
     return _solved(job, solver, corrector, why, tolerance)
 
 
@@ -518,7 +528,7 @@ def _served(planned: _Plan, dataset: xr.Dataset, result: SweepResult) -> bool:
     if REFUSED in dataset.attrs:
         return False
     check = planned.check
-    return met(dataset.attrs) or check is None or films_met(check, EHDMap(dataset), result.arrays)
+    return met(dataset.attrs) or check is None or films_met(check, EHDMap(dataset), check.films(result.arrays))
 
 
 def _makes_laws(dataset: xr.Dataset, group: xr.Dataset | None) -> bool:
@@ -563,7 +573,7 @@ def _finished(planned: _Plan, result: SweepResult, where: str) -> tuple[xr.Datas
     if planned.own_lines and not _makes_laws(dataset, group):
         return _finished(replace(planned, refined=None, correction=None, own_lines=False), result, where)
     if planned.check:
-        dataset.attrs.update(checked_laws(planned.check, EHDMap(dataset, group), arrays))
+        dataset.attrs.update(checked_laws(planned.check, EHDMap(dataset, group), planned.check.films(arrays)))
     if planned.spacing and not planned.refined and not planned.check:
         dataset = with_spacing(dataset, planned.job, planned.spacing, result.arrays)
     if planned.unserved:

@@ -1,4 +1,9 @@
-"""The contact laws of a map against fresh solves at random points: how good they are between nodes."""
+"""The contact laws of a map against films at random points: how good they are between nodes.
+
+Films are solved fresh. Those of laws that read the film table are read from it: how wrong the table is was found when
+it was made, and is stated at each point of a map; such laws beside fresh solves are a fact of the release, see
+`ehdmaps.table.checked`.
+"""
 
 from __future__ import annotations
 
@@ -10,12 +15,14 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from scipy.special import bdtrc
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.sampling import COMPLIANCE_BARS, DAMPING_BARS, draw_apart, draw_beyond, drawable
 from ehdmaps.jobs.make.store import Arrays
+from ehdmaps.jobs.make.table_films import read_points
 from ehdmaps.jobs.make.tasks import LineTask
 from ehdmaps.maps.backbone import BackboneField
 from ehdmaps.maps.backbone_plan import Axis
@@ -101,9 +108,16 @@ MOST_OF_READ = 100
 SHARES = {"law_": 0.99, "law_valley_": 0.95}
 """Share of the points that should be within the bars, over the whole map and in the valley."""
 
+CHANCE = 1e-3
+"""Chance with which as many random points miss a bar, of films that miss it at as many as may, from which on these are
+taken to miss it: some do of a hundred points of any good map, and none is solved for that."""
+
 REFUSED, HALVED, TOLERANCE = "law_refused", "law_lines_halved_along", "law_tolerance"
 """Attributes of the map: why it makes no law, the axes along which the steps of its lines were halved, and the
 tolerance that its laws were asked to keep."""
+
+AGAINST, READ = "law_check_against", "the film table"
+"""Attribute of the map: what its laws were held against, where that is no fresh solve."""
 
 STANDS_ON_LINES = (
     "these laws are made from refinement lines, whose steps are halved where the films between them miss, three times "
@@ -138,7 +152,8 @@ class LawCheck:
     """Random points over the map, in its valley and beyond its edges; `regions` says which is which.
 
     `compliance_bars` and `damping_bars` are those that the laws are held to; by a `tolerance` they are held to it by
-    stiffness, damping and film offset, with what the fresh solves state to be wrong by themselves.
+    stiffness, damping and film offset, with what the fresh solves state to be wrong by themselves. Where it `reads`,
+    films of the points are read from the film table by `TableSolver`.
     """
 
     contacts: tuple[LineContact, ...]
@@ -147,16 +162,46 @@ class LawCheck:
     compliance_bars: tuple[float, float] = COMPLIANCE_BARS
     damping_bars: tuple[float, float] = DAMPING_BARS
     tolerance: float | None = None
+    reads: TableSolver | None = None
+
+    @property
+    def to_solve(self) -> tuple[LineTask, ...]:
+        """Points that are solved."""
+        return () if self.reads else self.tasks
+
+    def films(self, results: Mapping[str, Arrays]) -> Mapping[str, Arrays]:
+        """Films of the points by key: solved ones, or those of the table.
+
+        Parameters
+        ----------
+        results : mapping
+            What was solved, by key of the tasks.
+        """
+        return read_points(self.tasks, self.reads) if self.reads else results
 
 
-def plan_check(job: Job, solver: ContactSolver, tolerance: float | None = None) -> LawCheck | None:
-    """Draw the points: load and speed log-uniform, temperature uniform, contact at random; None if `law_check` is 0."""
+def plan_check(
+    job: Job, solver: ContactSolver, tolerance: float | None = None, solves: bool = False
+) -> LawCheck | None:
+    """Draw the points: load and speed log-uniform, temperature uniform, contact at random; None if `law_check` is 0.
+
+    Parameters
+    ----------
+    job : Job
+        Job of the map.
+    solver : ContactSolver
+        What gives its films.
+    tolerance : float, optional
+        Share that the laws are held to; by fresh solves in any case.
+    solves : bool
+        Whether laws that read the film table are held against fresh solves, too.
+    """
     if tolerance is not None and not (TOLERANCES[0] <= tolerance <= TOLERANCES[1] and job.law_check and drawable(job)):
         raise InputError(
             f"tolerance: got {tolerance:g} and law_check = {job.law_check}; allowed: {TOLERANCES[0]:g} to "
             f"{TOLERANCES[1]:g} (0.01 is 1 %), with a law_check above 0 and a solver that has films"
         )
-    read = isinstance(solver, TableSolver)
+    read = solver if isinstance(solver, TableSolver) else None
     count = min(job.law_check, MOST_OF_READ) if read else job.law_check
     if not count or not drawable(job):
         return None
@@ -165,14 +210,13 @@ def plan_check(job: Job, solver: ContactSolver, tolerance: float | None = None) 
     drawn = [("", point) for point in over] + [("valley", point) for point in valley]
     slow, beyond = draw_beyond(job, rng, round(EDGE_SHARE * count))
     drawn += [("slow", point) for point in slow] + [("beyond", point) for point in beyond]
-    # the proof of films that are read is films that are solved
-    fresh = solver.other if isinstance(solver, TableSolver) else solver
+    fresh = read.other if read else solver
     tasks = tuple(LineTask(contact, job.lubricant, (w,), u, T, fresh) for _, (contact, w, u, T) in drawn)
     check = LawCheck(job.contacts, tasks, tuple(region for region, _ in drawn))
     if tolerance is not None:
         bars = (0.0, tolerance), (tolerance, SMALL_DAMPING * tolerance)
         return replace(check, compliance_bars=bars[0], damping_bars=bars[1], tolerance=tolerance)
-    return replace(check, compliance_bars=READ_COMPLIANCE_BARS) if read else check
+    return replace(check, compliance_bars=READ_COMPLIANCE_BARS, reads=None if solves else read) if read else check
 
 
 def checked_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> dict[str, float | int | str]:
@@ -266,8 +310,8 @@ def coarse_axis(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) ->
 
 
 def films_met(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> bool:
-    """Tell whether films between the points, without the table of a law, are within the bars at as many points as
-    wanted.
+    """Tell whether films between the points, without the table of a law, may be within the bars at as many points as
+    wanted: misses are no more than chance has of films that are, see `CHANCE`.
 
     Parameters
     ----------
@@ -282,7 +326,7 @@ def films_met(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> b
     for *_, region, wrong in _between(check, emap, results):
         missed[region].append(wrong)
     shares = zip(missed.values(), SHARES.values(), strict=True)
-    return all(np.mean(misses) <= 1.0 - share for misses, share in shares if misses)
+    return all(not any(misses) or bdtrc(sum(misses) - 1, len(misses), 1.0 - share) > CHANCE for misses, share in shares)
 
 
 def _between(
@@ -359,6 +403,8 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
         "law_check_points": sum(region in INSIDE for region in check.regions),
         "law_check_usable": sum(region in INSIDE for region in regions),
     }
+    if check.reads:
+        record[AGAINST] = READ
     if not rows:
         return record
     table = np.concatenate(rows)

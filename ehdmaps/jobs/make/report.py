@@ -15,6 +15,7 @@ import xarray as xr
 from ehdmaps.arrays import BoolArray
 from ehdmaps.errors import MapError
 from ehdmaps.jobs.make.correction import JUDGED
+from ehdmaps.jobs.make.law_check import AGAINST
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.records import MODEL_ERRORS, SPACING_ERRORS, lubricant_from_json, record_from_json
@@ -22,6 +23,7 @@ from ehdmaps.maps.schema import FILM_TABLE, OWN_POINTS, UNSERVED
 from ehdmaps.physics.closed_form import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM
 from ehdmaps.physics.solution import Status, tip_words, usable_points
 from ehdmaps.program import plain
+from ehdmaps.table.checked import checked_text
 from ehdmaps.units import (
     DAMPING,
     FILM,
@@ -221,6 +223,8 @@ def films_lines(dataset: xr.Dataset) -> Iterator[str]:
     elif FILM_TABLE in dataset.attrs:
         points = dataset["status"].size
         yield f"films: {points} points read from the film table, as the films of the laws are; none solved"
+        if text := checked_text(str(dataset.attrs[FILM_TABLE])):
+            yield f"  {text}"
     elif why := dataset.attrs.get(UNSERVED):
         yield f"films: all solved; {why}"
 
@@ -308,11 +312,22 @@ def reach_lines(emap: EHDMap) -> Iterator[str]:
 
 
 def law_lines(dataset: xr.Dataset) -> Iterator[str]:
-    """Yield what the check of the contact laws against fresh solves found; nothing where there was none."""
+    """Yield what the check of the contact laws found; nothing where there was none."""
     law = list(law_rows(dataset))
     if law:
-        yield "accuracy of the contact laws, at random points against fresh solves"
+        yield f"accuracy of the contact laws, at random points against {against(dataset)}"
         yield from (f"  {label:36s} {text}" for label, text in law)
+
+
+def against(dataset: xr.Dataset) -> str:
+    """Films that the laws of a map were held against, in words.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The map.
+    """
+    return str(dataset.attrs.get(AGAINST, "fresh solves"))
 
 
 def law_rows(dataset: xr.Dataset) -> Iterator[tuple[str, str]]:

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from ehdmaps.errors import SolverError, WorkerError
+from ehdmaps.jobs.executors import Lost, handed_out
 from ehdmaps.jobs.make.store import COMMIT_SECONDS, Arrays, Results, Site
 from ehdmaps.program import lack
 from ehdmaps.workers import WorkersDied, worker_pool
@@ -24,9 +25,6 @@ _AHEAD = 3
 _MOST_DEATHS = 4
 """Processes that die one after the other before any finishes a task: what one task does to its process, or somebody
 who kills one, is no reason to stop. Half as many where none of them begins a task."""
-
-MOST_OUT = 2000
-"""Tasks handed out to an executor that was given, of which nobody knows how many workers it has."""
 
 
 class Task(Protocol):
@@ -309,57 +307,17 @@ def _in_pool(tasks: Sequence[Task], workers: int, store: Results, tell: _Tell) -
             yield from _alone(list(running.values()), deaths, tell)
 
 
-@dataclass(frozen=True)
-class _Raised:
-    """An exception of a task, which is a bug: told apart from one by which an executor says that it lost the task."""
-
-    error: Exception
-
-
-def _caught(task: Task) -> Arrays | _Raised:
-    """Run one task where another machine may do it."""
-    try:
-        return _run(task)
-    except Exception as error:
-        return _Raised(error)
-
-
 def _in_executor(tasks: Sequence[Task], executor: Executor, store: Results, tell: _Tell) -> _Outcomes:
-    """Run tasks by an executor of the caller's; what it loses is handed out once more, then given up for this time."""
-    waiting = deque((task, True) for task in tasks)
-    running: dict[Future[Arrays | _Raised], tuple[Task, bool]] = {}
+    """Run tasks by an executor of the caller's."""
+    out = handed_out(executor, _run, tasks, tell, lambda task: task.where(range(task.points)), store.commit_if_due)
     try:
-        while waiting or running:
-            while waiting and len(running) < MOST_OUT:
-                task, first = waiting[0]
-                try:
-                    future = executor.submit(_caught, task)
-                except Exception as error:  # of any kind: it is broken, or was shut down
-                    reason = f"the executor takes no task any more ({error!s:.200}); the same command tries again"
-                    yield from ((left, left.failed(reason), False) for left, _ in waiting)
-                    waiting.clear()
-                    break
-                running[future] = waiting.popleft()
-            done, _ = wait(running, timeout=COMMIT_SECONDS, return_when=FIRST_COMPLETED)
-            store.commit_if_due()
-            for future in done:
-                task, first = running.pop(future)
-                try:
-                    outcome = future.result()
-                except Exception as error:  # of the executor's own kind, which is not known here
-                    if first:
-                        tell(f"the executor lost {task.where(range(task.points))} ({error!s:.200}): handed out again")
-                        waiting.append((task, False))
-                        continue
-                    reason = f"the executor lost the task twice ({error!s:.200}); the same command tries again"
-                    yield task, task.failed(reason), False
-                    continue
-                if isinstance(outcome, _Raised):
-                    raise outcome.error
+        for task, outcome in out:
+            if isinstance(outcome, Lost):
+                yield task, task.failed(outcome.reason), False
+            else:
                 yield task, outcome, True
     finally:
-        for future in running:
-            future.cancel()
+        out.close()
 
 
 def _alone(tasks: Sequence[Task], deaths: _Deaths, tell: _Tell) -> _Outcomes:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -22,6 +23,10 @@ from ehdmaps.table.fields import FILMS
 from ehdmaps.table.file import film_table
 from ehdmaps.table.films import TableFilms
 from ehdmaps.table.solver import TableSolver
+
+if TYPE_CHECKING:
+    from ehdmaps.jobs.make.store import Arrays
+    from ehdmaps.jobs.make.tasks import LineTask
 
 STIFFNESS_BAR, SHARES = 5e-3, (0.9, 0.5)
 """What the table has to state for a job that it serves: errors of the stiffness of no more than this, or of 1 % of the
@@ -129,6 +134,29 @@ def table_films(job: Job, solver: TableSolver) -> dict[str, npt.NDArray[Any]]:
         for contact in job.contacts
     ]
     return {name: np.stack([one[name] for one in read]) for name in read[0]}
+
+
+def read_points(tasks: Sequence[LineTask], solver: TableSolver) -> dict[str, Arrays]:
+    """Films of tasks of one point and one oil, read from the table, by the keys of the tasks.
+
+    Parameters
+    ----------
+    tasks : sequence of LineTask
+        The points.
+    solver : TableSolver
+        Says which of them are refused, and whether heat in the inlet thins them.
+    """
+    found = {}
+    for contact in dict.fromkeys(task.contact for task in tasks):
+        chosen = [task for task in tasks if task.contact == contact]
+        w, u, T = np.array([(task.loads[0], task.entrainment_speed, task.temperature) for task in chosen]).T
+        oil, thickest = chosen[0].lubricant, solver.thickest_film
+        read = film_table(oil).films(contact, oil, w, u, T, thickest_film=thickest, inlet_heat=solver.inlet_heat)
+        arrays = _film_arrays(read)
+        arrays["reason"] = arrays["reason"].astype(str)
+        for n, task in enumerate(chosen):
+            found[task.key] = {name: values[n : n + 1] for name, values in arrays.items()}
+    return found
 
 
 def _film_arrays(films: TableFilms) -> dict[str, npt.NDArray[Any]]:

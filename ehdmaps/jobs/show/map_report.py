@@ -13,6 +13,7 @@ from ehdmaps.figures import spread, typeset
 from ehdmaps.jobs.make.report import (
     AXES,
     NONE_STATED,
+    against,
     correction_lines,
     error_rows,
     extrapolated_lines,
@@ -296,7 +297,7 @@ def in_short(of: MapCurves) -> Iterator[str]:
     if errors:
         yield f"Estimated relative errors of 95 % of the points are at most: {', '.join(errors)}."
     if checked:
-        yield f"Relative error of the film compliance of the contact laws against fresh solves: {checked}."
+        yield f"Relative error of the film compliance of the contact laws against {against(emap.dataset)}: {checked}."
     if not emap.lubricant.verified:
         yield "The data of the oil are not verified."
 
@@ -430,11 +431,12 @@ def accuracy(emap: EHDMap) -> Markup:
         parts.append(tag("p", f"{tip[0].upper()}{tip[1:]}."))
     law = list(law_rows(dataset))
     if law:
-        parts.append(table(("check", "found"), law, "Contact laws at random points against fresh solves", (0, 1)))
+        words = f"Contact laws at random points against {against(dataset)}"
+        parts.append(table(("check", "found"), law, words, (0, 1)))
     elif lines := list(spacing_lines(dataset)):
         parts += [tag("h3", typeset(f"{lines[0][0].upper()}{lines[0][1:]}")), tag("pre", "\n".join(lines[1:]))]
     else:
-        parts.append(tag("p", "The contact laws of this map were not checked against fresh solves."))
+        parts.append(tag("p", "The contact laws of this map were not checked."))
     if lines := list(correction_lines(dataset)):
         parts += [tag("h3", typeset(lines[0])), sentences(typeset(line.strip()) for line in lines[1:])]
     if emap.backbone is not None:

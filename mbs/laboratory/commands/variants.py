@@ -8,10 +8,9 @@ from collections.abc import Sequence
 
 from ehdmaps.errors import InputError
 from ehdmaps.units import RPM, closest
-from ehdmaps.workers import available_cores
 from mbs.analyses.reach import axes_outside, outside_lines
 from mbs.commands.cases import read_compared
-from mbs.commands.common import Told, read_band, write
+from mbs.commands.common import Told, chosen_workers, read_band, write
 from mbs.laboratory.variants import Variant, VariantsResult, Variation, variants
 from mbs.output.model_text import clearance_text, common_supply, held_lines, temperature_text, weight_text
 from mbs.scene.choices import VARIED
@@ -27,8 +26,8 @@ _COLUMNS = " median   5 to 95 % of the windows   mean energy   highest"
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Run up with two laws, and again with each change."""
     scene, laws, clearance, settings, variations = _asked(arguments)
-    workers = arguments.workers or available_cores()
-    found = variants(scene, laws, variations, clearance, settings, Told("step"), keep_partial=True, workers=workers)
+    with chosen_workers(arguments) as workers:
+        found = variants(scene, laws, variations, clearance, settings, Told("step"), keep_partial=True, workers=workers)
     lines = [*_heading(found), *_tables(found), *_ranges(found), *_warnings(found)]
     title = f"{scene.title}\n{_base(found)}; one change at a time"
     figure = None
