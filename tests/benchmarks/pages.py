@@ -53,6 +53,7 @@ PAGES = (
     "docs/glossary.md",
     "docs/machines.md",
     "docs/openfoam_results.md",
+    "docs/clusters.md",
 )
 MADE = {
     "nu308.nc": "ehdmaps generate nu308 -o nu308.nc",
@@ -62,7 +63,7 @@ MADE = {
         "python -m tests.benchmarks.overnight night.nc --make nu308_night --kills 3 --again 50 --witness 100 "
         "--plot overnight.png"
     ),
-    "vg320.nc": "ehdmaps generate docs/vg320.toml -o vg320.nc",
+    "vg320.nc": "ehdmaps generate docs/vg320.toml -o vg320.nc --check",
     "dry.nc": "ehdmaps generate nu308 --solver hertz -o dry.nc",
     "spirax.nc": 'ehdmaps generate --bearing NU308 --oil "Spirax MA 80W" -o spirax.nc',
     "h12.nc": 'python -m examples.housings gearbox_housing --cutoff "12 kHz" -o h12.nc',
