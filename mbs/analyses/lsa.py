@@ -18,6 +18,7 @@ from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating, settled, states_of
 from mbs.analyses.soundness import findings_at_rest, lift_off, with_findings
 from mbs.linearised.averaged import AveragedEquilibrium, mean_equilibrium
+from mbs.linearised.excitation import Excited, excited_at
 from mbs.linearised.linear import StateSpace, frequency_response, level_bands, sensed, state_space, with_peaks
 from mbs.linearised.linear import responses as responses_of
 from mbs.linearised.modes import Modes, StateModes, modes_of, state_modes, undamped_modes
@@ -25,6 +26,7 @@ from mbs.linearised.validity import DynamicLoad, FilmError, dynamic_loads
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.findings import Finding
+from mbs.output.excitation.table import with_lines
 from mbs.output.files import described
 from mbs.output.results import linear_dataset, of_laws, with_states
 from mbs.scene.assembly import Model, law_attributes, laws_attributes
@@ -93,6 +95,8 @@ class LsaResult:
         What `mbs lsa -o` writes.
     findings : tuple of Finding
         What is beyond the laws of its bearings.
+    lines : Excited or None
+        Excitation by its bearings; None without deviations of them.
     """
 
     model: Model
@@ -110,6 +114,7 @@ class LsaResult:
     lifting: tuple[DynamicLoad, ...]
     dataset: xr.Dataset
     findings: tuple[Finding, ...] = ()
+    lines: Excited | None = None
 
     @cached_property
     def bands(self) -> PeakBands:
@@ -270,6 +275,8 @@ def _responded(found: _Linearised, frequencies: FloatArray) -> LsaResult:
                 "long_name": f"{words} size of the response at one cage angle",
             }
             dataset[f"response_{name}"] = (dataset["response_real"].dims, values, attributes)
+    lines = excited_at([balance], scene.sensors)
+    dataset = with_lines(dataset, [lines], scene.sensors)
     findings = (
         *findings_at_rest(model, balance.displacement, balance.operation),
         *(lift_off(load, scene) for load in lifting),
@@ -290,6 +297,7 @@ def _responded(found: _Linearised, frequencies: FloatArray) -> LsaResult:
         lifting=lifting,
         dataset=with_findings(described(with_states(dataset, states_of(model)), **law_attributes(model)), findings),
         findings=findings,
+        lines=lines,
     )
 
 

@@ -29,9 +29,11 @@ from mbs.linearised.critical import (
     OrderResponse,
     critical_speeds,
     order_responses,
+    orders,
     turning_places,
     with_critical,
 )
+from mbs.linearised.excitation import Excited, excited
 from mbs.linearised.linear import response_display
 from mbs.linearised.sweep import sweep as sweep_system
 from mbs.linearised.sweep_result import Sweep
@@ -39,10 +41,11 @@ from mbs.linearised.validity import DynamicLoad
 from mbs.model.elements import OnRings
 from mbs.model.findings import Cause, Finding
 from mbs.model.system import System
+from mbs.output.excitation.table import with_lines
 from mbs.output.files import described
 from mbs.output.model_text import clearance_text, common_supply, temperature_text
 from mbs.output.results import with_states
-from mbs.output.sweep_data import LARGEST, critical_dataset, largest_responses, sweep_dataset
+from mbs.output.sweep_data import LARGEST, critical_dataset, largest_responses, side_by_side_laws, sweep_dataset
 from mbs.scene.assembly import Model, law_attributes, laws_attributes
 from mbs.scene.scene import Scene
 from mbs.settings import CAGE_ANGLES, SweepRange
@@ -93,6 +96,8 @@ class SweepResult:
         What `mbs sweep -o` writes.
     findings : tuple of tuple of Finding
         What is beyond the laws of the bearings, one a case.
+    lines : tuple of Excited or None
+        Excitation by bearings, one a case; None without deviations of them.
     """
 
     cases: tuple[Case, ...]
@@ -100,6 +105,7 @@ class SweepResult:
     outside: tuple[Mapping[str, int], ...]
     dataset: xr.Dataset
     findings: tuple[tuple[Finding, ...], ...] = ()
+    lines: tuple[Excited | None, ...] = ()
 
     @cached_property
     def bands(self) -> tuple[SpeedBands, ...]:
@@ -262,7 +268,15 @@ def sweep(
     outside = tuple({name: int(np.count_nonzero(there)) for name, there in entry.outside.items()} for entry in found)
     findings = tuple(findings_over_speed(case.model, entry) for case, entry in zip(cases, found, strict=True))
     judged = Judged(list(zip([case.label for case in cases], findings, strict=True)))
-    return SweepResult(cases, tuple(found), outside, judged.marked(_dataset(cases, found)), findings)
+    lines = tuple(_lines(case, speeds, settings.cage_angles) for case in cases)
+    dataset = with_lines(judged.marked(_dataset(cases, found)), lines, cases[0].model.scene.sensors, "case")
+    return SweepResult(cases, tuple(found), outside, dataset, findings, lines)
+
+
+def _lines(case: Case, speeds: SweepRange, cage_angles: int) -> Excited | None:
+    """Excitation by the bearings of a model."""
+    sensors = case.model.scene.sensors
+    return excited(lambda speed: operating(case.model, speed).system, speeds.speeds.tolist(), sensors, cage_angles)
 
 
 def sweep_problems(scene: Scene) -> list[str]:
@@ -343,6 +357,8 @@ class CriticalResult:
         What `mbs critical -o` writes.
     findings : tuple of Finding
         What is beyond the laws of the bearings.
+    lines : Excited or None
+        Excitation by its bearings; None without deviations of them.
     """
 
     model: Model
@@ -352,6 +368,7 @@ class CriticalResult:
     responses: tuple[OrderResponse, ...]
     dataset: xr.Dataset
     findings: tuple[Finding, ...] = ()
+    lines: Excited | None = None
 
     @cached_property
     def bands(self) -> SpeedBands:
@@ -509,9 +526,11 @@ def _responded(swept: _Swept, speeds: FloatArray) -> CriticalResult:
                 "speeds, or add damping"
             ) from error
     dataset = critical_dataset(model.system, model.scene.sensors, sweep, found, speeds, responses)
+    lines = excited(system_at, speeds.tolist(), model.scene.sensors, sweep.bearings.angles)
+    dataset = with_lines(dataset, [lines], model.scene.sensors)
     findings = (*findings_over_speed(model, sweep), *_lift_off(model, sweep, speeds, responses))
     dataset = with_findings(described(dataset, **law_attributes(model)), findings)
-    return CriticalResult(model, sweep, found, speeds, responses, dataset, findings)
+    return CriticalResult(model, sweep, found, speeds, responses, dataset, findings, lines)
 
 
 def _lift_off(model: Model, sweep: Sweep, speeds: FloatArray, responses: Sequence[OrderResponse]) -> Iterator[Finding]:
@@ -545,15 +564,10 @@ def dataset_of_laws(labels: Sequence[str], results: Sequence[CriticalResult]) ->
     results : sequence of CriticalResult
         Results of `critical_of`.
     """
-    parts = [result.dataset for result in results]
-    if len(parts) == 1:
-        return parts[0]
-    # Dims without coordinates, whose lengths differ, are numbered for the while.
-    bare = {name for part in parts for name in part.dims if name not in part.coords}
-    numbered = [part.assign_coords({name: np.arange(part.sizes[name]) for name in bare}) for part in parts]
-    law = xr.DataArray(np.array(labels, dtype=np.str_), dims="law", name="law")
-    joined = xr.concat(numbered, law, data_vars="all", join="outer", combine_attrs="override").drop_vars(list(bare))
-    return joined.assign_attrs({**parts[0].attrs, **laws_attributes(labels, [result.model for result in results])})
+    if len(results) == 1:
+        return results[0].dataset
+    joined = side_by_side_laws(labels, [result.dataset for result in results])
+    return joined.assign_attrs(laws_attributes(labels, [result.model for result in results]))
 
 
 def critical_plot(labels: Sequence[str], results: Sequence[CriticalResult], banded: bool = False) -> Figure:
@@ -585,15 +599,3 @@ def critical_plot(labels: Sequence[str], results: Sequence[CriticalResult], band
             for label, entry in zip(labels, results, strict=True)
         ]
     )
-
-
-def orders(system: System) -> tuple[float, ...]:
-    """Orders for which speeds may be critical: those of the loads that turn, else the spins of the bodies.
-
-    Parameters
-    ----------
-    system : System
-        The system.
-    """
-    found = {abs(load.order) for load in system.turning} or {abs(body.spin) for body in system.bodies if body.spin}
-    return tuple(sorted(order for order in found if math.isfinite(order)))

@@ -16,15 +16,16 @@ from mbs.analyses.case import Case
 from mbs.analyses.operating import operating
 from mbs.analyses.reach import axes_outside, fade_lines, outside_lines, sources_of
 from mbs.analyses.soundness import Judged
-from mbs.analyses.sweep import CriticalResult, SweepSettings, critical_of, critical_plot, dataset_of_laws, orders
+from mbs.analyses.sweep import CriticalResult, SweepSettings, critical_of, critical_plot, dataset_of_laws
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Looked, read_cage_angles, with_bands, write
 from mbs.commands.lsa import MOST_COMPARED_CASES
 from mbs.commands.sweep import read_speeds
-from mbs.linearised.critical import CriticalSpeed
+from mbs.linearised.critical import CriticalSpeed, orders
 from mbs.linearised.linear import sensor_unit
 from mbs.output.band_text import HEAD, LOPSIDED, about_lines, bounds_text, deserved, term_words
+from mbs.output.excitation.table import line_rows
 from mbs.output.model_text import clean, heading
 from mbs.output.reduction_text import reduction_lines
 from mbs.output.sweep_data import orbits, sensed
@@ -115,6 +116,7 @@ def _report(found: CriticalResult, label: str, banded: bool) -> list[str]:
         f"  {swept.size} speeds from {_rpm(swept[0])} to {_rpm(np.abs(swept).max())}, {more} more around critical ones",
         *([] if label else _critical(found, banded)),
         *_responses(found, banded and not label),
+        *line_rows(found.lines, model.scene.sensors),
         *_reduction(found),
         *fade_lines(model, swept),
     ]

@@ -31,6 +31,7 @@ from mbs.output.band_text import (
     lost_lines,
     value_text,
 )
+from mbs.output.excitation.table import line_rows
 from mbs.output.files import RESULT
 from mbs.output.model_text import band_lines, film_lines, heading
 from mbs.output.reduction_text import reduction_lines
@@ -116,6 +117,7 @@ def _report(found: LsaResult, label: str, banded: bool) -> list[str]:
         f"{found.asked} frequencies, and {frequencies.size - found.asked} more around lightly "
         "damped modes",
         *(_peak_bands(model, found) if banded else _peaks(model, found)),
+        *line_rows(found.lines, scene.sensors),
         *band_lines(model, found.film_share, banded),
         *_reduction(found),
         *film_lines(found.errors, frequencies),

@@ -27,6 +27,7 @@ from mbs.linearised.sweep_result import Sweep, exchanged
 from mbs.model.elements import Operation
 from mbs.model.system import System
 from mbs.output.band_text import DECIDED, HEAD, about_lines, bounds_text, exact_text
+from mbs.output.excitation.table import line_rows
 from mbs.output.model_text import (
     band_lines,
     clean,
@@ -64,7 +65,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines = [*judged.first, *done.lines]
     outside: list[str] = []
     torques = result.dataset["rolling_torque"].values
-    for case, entry, calls, torque in zip(cases, found, result.outside, torques, strict=True):
+    each = zip(cases, found, result.outside, torques, result.lines, strict=True)
+    for case, entry, calls, torque, lines_of_case in each:
         outside += _outside(case, entry, calls)
         lines += [
             *heading(case.model),
@@ -79,6 +81,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *_reduction(entry, case.model),
             *(_complex_bands(entry, result.bands[0], case.model) if banded else []),
             *_responses(entry),
+            *line_rows(lines_of_case, case.model.scene.sensors),
             *band_lines(case.model, entry.film_share),
             *_exchanged(entry),
             *_unsure(entry),

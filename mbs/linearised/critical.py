@@ -223,6 +223,18 @@ def order_responses(
     )
 
 
+def orders(system: System) -> tuple[float, ...]:
+    """Orders for which speeds may be critical: those of the loads that turn, else the spins of the bodies.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    """
+    found = {abs(load.order) for load in system.turning} or {abs(body.spin) for body in system.bodies if body.spin}
+    return tuple(sorted(order for order in found if math.isfinite(order)))
+
+
 def _orders(system: System) -> list[float]:
     """Orders of the loads that turn, rising."""
     return sorted({abs(load.order) for load in system.turning})

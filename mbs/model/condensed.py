@@ -21,7 +21,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from mbs.model.contacts import LAW_CHANGES, Contacts, Slopes
 
 
@@ -47,6 +47,10 @@ class Condensed:
         (k, Z, J) each; None where it is not known.
     held_by : str
         Name of what holds that, for people.
+    which : array (Z,), of int, or None
+        Places of these rolling elements among all of the bearing; None for all of them.
+    raceways : int or None
+        How many contacts of an element are with raceways, the first ones; None for all.
     """
 
     contacts: Contacts
@@ -56,6 +60,8 @@ class Condensed:
     natural: FloatArray | None = None
     left_out: Callable[[ComplexArray], tuple[ComplexArray, FloatArray]] | None = None
     held_by: str = "map"
+    which: IntArray | None = None
+    raceways: int | None = None
 
     @property
     def stated(self) -> Slopes:
@@ -138,6 +144,31 @@ class Condensed:
             half = np.swapaxes(by.feel[turns], -1, -2)[None] @ (z[..., None] * at.feel)[:, None]
             moved[:, turns] += half + np.swapaxes(half, -1, -2) + by.turning[turns]
         return np.ascontiguousarray(np.swapaxes(_between(before, moved, after), 0, 1))
+
+    def by_approach(self, s: ComplexArray, count: int) -> ComplexArray:
+        """Forces on the ports by approaches added to contacts with the raceways, shape (k, count, 2, p) [N/m].
+
+        Parameters
+        ----------
+        s : array, shape (k,)
+            Complex frequencies [1/s].
+        count : int
+            Number of rolling elements of the bearing; on those that are not here there is none.
+        """
+        at, m = self.contacts, self.pose.shape[1]
+        if not self.relaxes and np.any(at.times):
+            slow = dataclasses.replace(self, contacts=at._replace(times=np.zeros_like(at.times)))
+            return slow.by_approach(s, count)
+        before, _, z = self._ends(s, *self._whole)
+        felt = -np.einsum("kzna,zjn,kzj->kzja", before, at.feel, z, optimize=True)[:, :, : self.raceways]
+        # contacts with both raceways in series feel D alone, those with the outer one V alone
+        inner = np.any(at.feel[..., :m], axis=-1)[:, : self.raceways]
+        outer = np.ones_like(inner) if at.feel.shape[-1] == m else ~inner
+        found = np.zeros((s.size, count, 2, self.pose.shape[2]), dtype=np.complex128)
+        where = np.arange(count) if self.which is None else self.which
+        for side, on in enumerate((inner, outer)):
+            found[:, where, side] = np.sum(felt * on[:, :, None], axis=2)
+        return found
 
     def parts_along(
         self, s: ComplexArray, left: ComplexArray, right: ComplexArray, part: ComplexArray, size: FloatArray

@@ -288,6 +288,24 @@ def largest_responses(
     return {name: np.array(rows) for name, rows in found.items()}
 
 
+def side_by_side_laws(labels: Sequence[str], parts: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Datasets of several laws over the dim law, as long as the longest.
+
+    Parameters
+    ----------
+    labels : sequence of str
+        Name of each law.
+    parts : sequence of Dataset
+        One a law.
+    """
+    # Dims without coordinates, whose lengths differ, are numbered for the while.
+    bare = {name for part in parts for name in part.dims if name not in part.coords}
+    numbered = [part.assign_coords({name: np.arange(part.sizes[name]) for name in bare}) for part in parts]
+    law = xr.DataArray(np.array(labels, dtype=np.str_), dims="law", name="law")
+    joined = xr.concat(numbered, law, data_vars="all", join="outer", combine_attrs="override")
+    return joined.drop_vars(list(bare)).assign_attrs(parts[0].attrs)
+
+
 def critical_dataset(
     system: System,
     sensors: Sequence[Sensor],

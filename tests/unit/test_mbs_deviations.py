@@ -15,12 +15,13 @@ from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.deviations import Deviations, Spall, Turns, Wave, deviation_data, spectrum
 from mbs.bearings.laws import hertz
+from mbs.linearised.excitation import excited
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.settings import Settings
 from mbs.transient.run import run
-from tests.conformance.machines import BALL, FEW, NU, SPHERE, TABLE, TAPERED, Machine, alike, preloaded
+from tests.conformance.machines import ANGULAR, BALL, FEW, NU, SPHERE, TABLE, TAPERED, Machine, alike, preloaded
 
 Z = 10
 EVEN = BearingGeometry(
@@ -150,6 +151,55 @@ def test_the_energy_that_deviations_bring_in_is_accounted_for(machine):
         brought = abs(element.driven) + abs(element.dissipated)
     # rollers that are bodies swing in a few steps; the work of centrifugal loads begins with the first step
     assert left[1] < 0.02 * brought and left[1] < 0.6 * left[0]
+
+
+SMALL_WAVES = """
+waviness = [{ on = "inner", waves = 13, amplitude = "0.01 um" }, { on = "inner", waves = 12, amplitude = "0.05 um" }, \
+{ on = "outer", waves = 11, amplitude = "0.01 um" }]
+size_difference = ["0.02 um"]
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("law", ["hertz:1e-4 s", "table"])
+@pytest.mark.parametrize(
+    "bearings",
+    [alike(NU.replace('"10 um"', '"-10 um"')), preloaded(ANGULAR)],
+    ids=["cylindrical", "angular contact"],
+)
+def test_small_deviations_do_in_time_what_linear_analyses_say(bearings, law):
+    """Lines of the difference of two runs, by least squares at their orders: within 1 % of the largest of each bearing.
+
+    The parts that the passing of elements modulates are of second order, and left out.
+    """
+    machine = Machine("one", bearings, axial=len(bearings[0][1]) < 60)
+    perfect = machine.text((0.0, -100.0, 20.0))
+    wavy = perfect.replace('name = "left_0"\n', f'name = "left_0"\n{SMALL_WAVES}')
+    models = [assemble(parse_scene(text, "one", "one"), law) for text in (perfect, wavy)]
+    speed, (sensor,) = 157.0, models[0].scene.sensors
+    start = equilibrium(models[0].system, Operation(speed)).displacement
+    runs = [
+        run(
+            one.system,
+            SpeedProfile.constant(speed),
+            0.8,
+            Settings(step=2e-5, sample=1e-4),
+            sensors=[sensor],
+            displacement=start,
+        )
+        for one in models
+    ]
+    found = excited(lambda _: models[1].system, [speed], [sensor], 4)
+    orders = sorted({line.order for line in found.lines})
+    late = runs[0].time > 0.4  # what the beginning has set in motion is gone
+    angle, moved = runs[0].angle[late], (runs[1].signals - runs[0].signals)[late, 0]
+    parts = np.concatenate([[np.cos(order * angle), -np.sin(order * angle)] for order in orders]).T
+    fitted = np.linalg.lstsq(parts, moved)[0].reshape(-1, 2) @ np.array([1.0, 1j])
+    wanted = np.zeros(len(orders), dtype=np.complex128)
+    for line, seen in zip(found.lines, found.seen[0, :, 0], strict=True):
+        wanted[orders.index(line.order)] += seen if line.source != "passing" else 0.0
+    assert np.count_nonzero(np.abs(wanted) > 0.01 * np.abs(wanted).max()) >= 2
+    np.testing.assert_allclose(fitted, wanted, atol=0.01 * np.abs(wanted).max())
 
 
 def test_what_a_scene_says_wrongly_is_said():

@@ -328,13 +328,13 @@ class LocatingElement(OnRings):
         if self.relaxes:
             films = FilmsInTime.at_rest(force) if films is None else films.after(step, force)
         slowed = answer.damping @ velocity
-        turning = turned_by(pose, answer.force + slowed) * self.cage_turn * operation.speed
-        dissipated, brought = float(velocity @ slowed), 0.0
+        at_rest, dissipated, brought = answer.force + slowed, float(velocity @ slowed), 0.0
         if self.deviation_data is not None:
-            by, (own, at_rest) = force.by_rates[:6], force.by_rates[6:].tolist()
+            by, (own, pressed) = force.by_rates[:6], force.by_rates[6:].tolist()
             taken = -float(velocity @ by)
-            answer.force[:] += by
-            dissipated, brought = dissipated + 2.0 * taken + own, at_rest + taken + own
+            at_rest -= by
+            dissipated, brought = dissipated + 2.0 * taken + own, pressed + taken + own
+        turning = turned_by(pose, at_rest) * self.cage_turn * operation.speed
         return answer, LocatingStates(
             time=operation.time,
             last=last,

@@ -226,6 +226,8 @@ class LocatingForce:
             if not np.all(np.isfinite(rate)):
                 raise InputError(f"{self.geometry.kind}, velocity: got {rate.tolist()}; allowed: finite numbers")
             force -= damping @ rate
+        if self._data.given("added") is not None:
+            force += self.by_rates[:6]
         return force, stiffness, damping
 
     def loads(

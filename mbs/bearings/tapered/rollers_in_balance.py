@@ -71,7 +71,7 @@ def rollers_in_balance(
     natural, slices = np.zeros_like(lines.contacts.stiffness), 2 * lines.approaches.shape[2]
     natural[:, :slices] = np.concatenate(found, axis=1)
     slopes = _slopes(force, lines, rows[on, FIRST_RIB : FIRST_RIB + natural.shape[1] - slices], relaxes)
-    return Condensed(lines.contacts, lines.pose, relaxes, slopes, natural)
+    return Condensed(lines.contacts, lines.pose, relaxes, slopes, natural, which=np.flatnonzero(on), raceways=slices)
 
 
 def by_pose(force: TaperedForce, cage_angle: float) -> FloatArray:

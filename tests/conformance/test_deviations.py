@@ -1,0 +1,81 @@
+"""Deviations from the form in all kinds of bearings: compiled runs, and what linear analyses make of them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mbs import assemble, parse_scene
+from mbs.linearised.excitation import lines_of
+from mbs.model.equilibrium import equilibrium
+from mbs.model.profiles import SpeedProfile
+from mbs.settings import Settings
+from mbs.transient.run import Options, run
+from tests.conformance.machines import KINDS
+
+ROLLING = [kind for kind in KINDS if kind.name != "table"]
+STEPS, STEP = 40, 2e-5
+KEYS = """
+waviness = [{ on = "inner", waves = 9, amplitude = "0.3 um" }, { on = "outer", waves = [2, 8], amplitude = "0.2 um" }, \
+{ on = "elements", element = 2, waves = 2, amplitude = "0.2 um" }]
+size_difference = ["0.4 um", "0 um", "-0.3 um"]
+spall = [{ on = "outer", angle = "-90 deg", length = "2 mm", depth = "3 um" }]
+"""
+
+
+def model_of(kind, law):
+    """A machine whose bearings all deviate, under a load."""
+    text = kind.text((300.0, -2000.0, 150.0)).replace("[[bearings]]\n", f"[[bearings]]{KEYS}")
+    return assemble(parse_scene(text, "machine", "machine.toml"), law)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ROLLING, ids=lambda kind: kind.name)
+def test_compiled_steps_are_those_of_python(kind):
+    """Forces to what Newton's method leaves, 1e-10, grown over the steps; energies are told."""
+    model = model_of(kind, "hertz:1.25e-5 s")
+    start = equilibrium(model.system, model.operation).displacement
+    course, settings = SpeedProfile.ramp(150.0, 160.0, STEPS * STEP), Settings(step=STEP, sample=STEP)
+    ours, theirs = (
+        run(model.system, course, STEPS * STEP, settings, displacement=start, options=Options(compiled=compiled))
+        for compiled in (True, False)
+    )
+    assert ours.compiled == ours.steps and theirs.compiled == 0
+    for one, other in zip(ours.forces, theirs.forces, strict=True):
+        np.testing.assert_allclose(one, other, atol=1e-6 * np.abs(other).max())
+    for one, other in zip(ours.energy.elements, theirs.energy.elements, strict=True):
+        assert one.told and other.told
+        # balls that change between two and four contacts do so a round-off apart
+        assert [one.driven, one.dissipated] == pytest.approx([other.driven, other.dissipated], rel=2e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ROLLING, ids=lambda kind: kind.name)
+def test_small_approaches_are_felt_as_they_are(kind):
+    """Force by an approach in each contact, as linear analyses have it, against differences of the force at rest."""
+    model = model_of(kind, "table")
+    balance = equilibrium(model.system, model.operation)
+    entry = balance.system.elements[0]
+    element = getattr(entry.element, "plain", entry.element)
+    moved = balance.system.relative(element.inner, element.outer) @ balance.displacement
+    count, step = element.deviation_data.elements, 1e-9
+    condensed = element.small_motions(moved, model.operation)
+    found = condensed.by_approach(np.zeros(1, dtype=np.complex128), count)[0].real
+    wanted = np.zeros((count, 2, 6))
+    for contact in np.ndindex(count, 2):
+        for way in (step, -step):
+            added = np.zeros((count, 2, 2))
+            added[(*contact, 0)] = way
+            element.deviate(added)
+            wanted[contact] += element.evaluate(moved, np.zeros(6), model.operation).force / (2.0 * way)
+    element.deviate(None)
+    # the tractions that hold gyroscopic moments are not symmetric; differences to some 1e-4
+    np.testing.assert_allclose(found, wanted, atol=2e-3 * np.abs(wanted).max(axis=(0, 1)).max())
+
+
+@pytest.mark.parametrize("kind", ROLLING, ids=lambda kind: kind.name)
+def test_every_source_has_its_lines(kind):
+    balance = equilibrium(model_of(kind, "hertz:1.25e-5 s").system, model_of(kind, "hertz").operation)
+    lines = lines_of(balance)
+    assert {line.source for line in lines} == {"inner ring", "outer ring", "elements", "sizes", "passing"}
+    assert all(line.order > 0.0 and np.all(np.isfinite(force)) for line, force in lines.items())
