@@ -521,7 +521,7 @@ def test_maps_that_share_some_points_or_none_are_compared_between_them():
     for second, common in ((part, 280), (none, 0)):
         found = compare(first, second, ("a", "b"))
         assert found.common == common and found.between is not None and not found.not_between
-        ranges = found.between.sample.ranges
+        ranges = found.between.ranges
         assert ranges["load"] == (1e3, 1e6) and ranges["entrainment_speed"] == (0.5, 2.0)
         for entry in found.between.differences:
             assert entry.points == 300 and math.isnan(entry.over_stated)
@@ -554,7 +554,7 @@ def test_compare_looks_between_points_where_both_maps_are_known():
     second = made(job_of(SMALL.replace('"1 m/s", "2 m/s"', '"1 m/s", "3 m/s"')))
     found = compare(holey, second, ("a", "b"))
     assert found.between is not None
-    reach, places = EHDMap(holey).reach(("inner",)), found.between.sample.places
+    reach, places = EHDMap(holey).reach(("inner",)), found.between.places
     ends = [reach.loads_at(float(place["entrainment_speed"]), float(place["temperature"]))[1] for place in places]
     assert 50 < len(places) < 300
     assert all(float(place["load"]) <= end for place, end in zip(places, ends, strict=True))

@@ -42,47 +42,8 @@ POINTS = 300
 """Random points."""
 
 
-@dataclass(frozen=True, eq=False)
-class FilmSample:
-    """Two maps at random points.
-
-    Attributes
-    ----------
-    seed : int
-        Seed of the points.
-    ranges : mapping of str to (float, float)
-        Range by axis from which they were drawn: load [N/m] and entrainment speed [m/s], log-uniform, and temperature
-        [K], uniform.
-    places : tuple of mapping
-        Contact, load, entrainment speed and temperature of each point.
-    first, second : mapping of str to array (n,)
-        Variables of both maps there, SI, by the structural law of each.
-    """
-
-    seed: int
-    ranges: Mapping[str, tuple[float, float]]
-    places: tuple[Mapping[str, str | float], ...]
-    first: Mapping[str, FloatArray]
-    second: Mapping[str, FloatArray]
-
-
-def sampled_films(first: EHDMap, second: EHDMap, names: tuple[str, str], seed: int, count: int = POINTS) -> FilmSample:
-    """Read the films of two maps at random points of the range that both have.
-
-    Parameters
-    ----------
-    first, second : EHDMap
-        The maps; they share a contact.
-    names : tuple of str
-        What messages call them.
-    seed, count : int
-        Seed and number of the points.
-
-    Raises
-    ------
-    MapError
-        If an axis has no range in common, or a map has no films between its points.
-    """
+def _between(first: EHDMap, second: EHDMap, names: tuple[str, str], seed: int, count: int = POINTS) -> Between:
+    """Compare the films of two maps, which share a contact, at random points of the range that both have."""
     ranges = _ranges(first, second, names)
     contacts = [contact.name for contact in first.contacts if contact.name in second.dataset["contact"].values]
     rng = np.random.default_rng(seed)
@@ -103,8 +64,14 @@ def sampled_films(first: EHDMap, second: EHDMap, names: tuple[str, str], seed: i
             raise MapError(f"{name}: {error}") from error
     if not places:
         raise MapError(f"{names[0]} and {names[1]}: no films between points in common; generate one of them again")
-    films = [_films(emap, places) for emap in (first, second)]
-    return FilmSample(seed, ranges, tuple(places), films[0], films[1])
+    a, b = (_films(emap, places) for emap in (first, second))
+    every, none_stated = np.ones(len(places), dtype=bool), np.full(len(places), np.nan)
+    differences = (
+        _difference(name, *_relative(a[name], b[name], every), none_stated, places.__getitem__)
+        for name in a
+        if name in b
+    )
+    return Between(seed, ranges, tuple(places), tuple(differences))
 
 
 def _ranges(first: EHDMap, second: EHDMap, names: tuple[str, str]) -> dict[str, tuple[float, float]]:
@@ -128,38 +95,29 @@ def _ranges(first: EHDMap, second: EHDMap, names: tuple[str, str]) -> dict[str, 
 def _known(emap: EHDMap, places: list[Mapping[str, str | float]]) -> list[Mapping[str, str | float]]:
     """Places of which a map knows the films."""
     fields = {name: emap.film_field((name,)) for name in sorted({str(place["contact"]) for place in places})}
-    return [
-        place
-        for place in places
-        if known_at(
-            fields[str(place["contact"])],
-            np.array([float(place["load"])]),
-            float(place["entrainment_speed"]),
-            float(place["temperature"]),
-        ).all()
-    ]
+
+    def known(contact: str, load: float, speed: float, temperature: float) -> bool:
+        return bool(known_at(fields[contact], np.array([load]), speed, temperature).all())
+
+    return [place for place in places if known(*place.values())]  # type: ignore[arg-type]
 
 
 def _films(emap: EHDMap, places: list[Mapping[str, str | float]]) -> dict[str, FloatArray]:
     """Variables of a map at some places."""
     field = emap.film_field(tuple(sorted({str(place["contact"]) for place in places})))
-    contacts = {contact.name: contact for contact in emap.contacts}
-    rolling = emap.rolling_film
-    rows = []
-    for place in places:
-        name = str(place["contact"])
-        load, speed, temperature = (float(place[axis]) for axis, _ in AXES)
+    contacts, rolling = {contact.name: contact for contact in emap.contacts}, emap.rolling_film
+
+    def row(name: str, load: float, speed: float, temperature: float) -> tuple[float, ...]:
         offset = compliance = loss = 0.0
         if not field.dry:
             at = np.array([[[load]]]), np.array([speed]), np.array([temperature])
             offset, compliance, loss = (float(values.item()) for values in field.films(name, *at))
         whole = structured(contacts[name], load, offset, compliance, loss, np.nan, np.nan)
-        force = np.nan if rolling is None else float(rolling.rolling_force(name, load, speed, temperature))
-        rows.append((whole.stiffness, whole.damping, whole.approach, offset, compliance, loss, force))
-    table = dict(zip(COMPARED_FILMS, np.array(rows, dtype=np.float64).T, strict=True))
-    if rolling is None:
-        del table["rolling_force"]
-    return table
+        force = [] if rolling is None else [float(rolling.rolling_force(name, load, speed, temperature))]
+        return (whole.stiffness, whole.damping, whole.approach, offset, compliance, loss, *force)
+
+    rows = [row(*place.values()) for place in places]  # type: ignore[arg-type]
+    return dict(zip(COMPARED_FILMS, np.array(rows, dtype=np.float64).T, strict=False))
 
 
 COMPARED = (
@@ -233,13 +191,20 @@ class Between:
 
     Attributes
     ----------
-    sample : FilmSample
-        The points, their seed and range.
+    seed : int
+        Seed of the points.
+    ranges : mapping of str to (float, float)
+        Range by axis from which they were drawn: load [N/m] and entrainment speed [m/s], log-uniform, and temperature
+        [K], uniform.
+    places : tuple of mapping
+        Contact, load, entrainment speed and temperature of each point.
     differences : tuple of Difference
         One for each variable of `ehdmaps.jobs.show.compare.COMPARED_FILMS` that both maps have.
     """
 
-    sample: FilmSample
+    seed: int
+    ranges: Mapping[str, tuple[float, float]]
+    places: tuple[Mapping[str, str | float], ...]
     differences: tuple[Difference, ...]
 
 
@@ -305,14 +270,13 @@ def compare(
         between its points.
     """
     a, b = (source.dataset if isinstance(source, EHDMap) else source for source in (first, second))
-    _check_contacts(a, b, names)
-    here, there = _common(a, b)
+    here, there = _common(a, b, names)
     common = int(here["status"].size)
     between, reason = None, ""
     if common < min(a["status"].size, b["status"].size):
         try:
             emaps = [source if isinstance(source, EHDMap) else EHDMap(source) for source in (first, second)]
-            between = _between(sampled_films(emaps[0], emaps[1], names, seed))
+            between = _between(emaps[0], emaps[1], names, seed)
         except (MapError, InputError) as error:
             if common == 0:
                 raise
@@ -321,7 +285,12 @@ def compare(
     variables = [name for name in COMPARED if name in here and name in there] if common else []
     relative = {name: _relative(here[name].values, there[name].values, usable) for name in variables}
     dims = here["status"].dims
-    place = _Grid(here)
+
+    def place(index: int) -> dict[str, str | float]:
+        at = np.unravel_index(index, usable.shape)
+        axes = {axis: float(here[axis].values[at[position]]) for position, (axis, _) in enumerate(AXES, 1)}
+        return {"contact": str(here["contact"].values[at[0]]), **axes}
+
     return Comparison(
         names=names,
         titles=(str(a.attrs["title"]), str(b.attrs["title"])),
@@ -336,33 +305,6 @@ def compare(
         between=between,
         not_between=reason,
     )
-
-
-@dataclass(frozen=True)
-class _Grid:
-    """Places of the points of a map."""
-
-    dataset: xr.Dataset
-
-    def __call__(self, index: int) -> dict[str, str | float]:
-        """Place of a point, by its flat index."""
-        data = self.dataset
-        at = np.unravel_index(index, data["status"].shape)
-        place: dict[str, str | float] = {"contact": str(data["contact"].values[at[0]])}
-        return place | {axis: float(data[axis].values[at[position]]) for position, (axis, _) in enumerate(AXES, 1)}
-
-
-def _between(sample: FilmSample) -> Between:
-    """Sum up the differences of films at random points."""
-    every, none_stated = np.ones(len(sample.places), dtype=bool), np.full(len(sample.places), np.nan)
-    differences = (
-        _difference(
-            name, *_relative(sample.first[name], sample.second[name], every), none_stated, sample.places.__getitem__
-        )
-        for name in COMPARED_FILMS
-        if name in sample.first and name in sample.second
-    )
-    return Between(sample, tuple(differences))
 
 
 def _without_label(dataset: xr.Dataset, name: str) -> object:
@@ -420,26 +362,20 @@ def _difference(name: str, relative: FloatArray, left_out: int, stated: FloatArr
     )
 
 
-def _check_contacts(first: xr.Dataset, second: xr.Dataset, names: tuple[str, str]) -> None:
-    """Refuse maps that share no contact."""
-    if not set(map(str, first["contact"].values)) & set(map(str, second["contact"].values)):
+def _common(first: xr.Dataset, second: xr.Dataset, names: tuple[str, str]) -> tuple[xr.Dataset, xr.Dataset]:
+    """Return both maps on the points that they share, with empty axes where they share none; refuse other contacts."""
+    contacts = [list(map(str, dataset["contact"].values)) for dataset in (first, second)]
+    shared = [name for name in contacts[0] if name in contacts[1]]
+    if not shared:
         raise MapError(
-            f"{names[0]} and {names[1]}: contacts are {', '.join(map(str, first['contact'].values))} and "
-            f"{', '.join(map(str, second['contact'].values))}; allowed: maps that share a contact"
+            f"{names[0]} and {names[1]}: contacts are {', '.join(contacts[0])} and {', '.join(contacts[1])}; "
+            "allowed: maps that share a contact"
         )
-
-
-def _common(first: xr.Dataset, second: xr.Dataset) -> tuple[xr.Dataset, xr.Dataset]:
-    """Return both maps on the points that they share; with empty axes where they share none."""
-    here: dict[str, Any] = {}
-    there: dict[str, Any] = {}
-    contacts = [str(name) for name in first["contact"].values if name in second["contact"].values]
-    here["contact"] = [list(map(str, first["contact"].values)).index(name) for name in contacts]
-    there["contact"] = [list(map(str, second["contact"].values)).index(name) for name in contacts]
+    here, there = ({"contact": [of.index(name) for name in shared]} for of in contacts)
     for name, _ in AXES:
         a, b = first[name].values, second[name].values
         rows, columns = np.nonzero(np.abs(a[:, None] - b[None, :]) <= _SAME_AXIS_VALUE * np.abs(a[:, None]))
-        here[name], there[name] = rows, columns
+        here[name], there[name] = rows.tolist(), columns.tolist()
     return first.isel(here), second.isel(there)
 
 
@@ -474,9 +410,9 @@ def comparison_json(comparison: Comparison) -> str:
         "between": None
         if between is None
         else {
-            "points": len(between.sample.places),
-            "seed": between.sample.seed,
-            "ranges": between.sample.ranges,
+            "points": len(between.places),
+            "seed": between.seed,
+            "ranges": between.ranges,
             "differences": _records(between.differences),
         },
         "not_between": comparison.not_between,
@@ -506,22 +442,17 @@ def _lines(comparison: Comparison) -> Iterator[str]:
         f"(A has {comparison.points[0]}, B {comparison.points[1]})"
     )
     yield from _table(comparison.differences, True)
-    if comparison.between is not None:
-        sample = comparison.between.sample
-        ranges = ", ".join(_range(sample.ranges[axis], display) for axis, display in AXES)
+    if (between := comparison.between) is not None:
+        ends = ((between.ranges[axis], display) for axis, display in AXES)
+        ranges = ", ".join(f"{display.text(low)} to {display.text(high)}" for (low, high), display in ends)
         yield (
-            f"   not all points are shared: films between them, as contact laws read them, at {len(sample.places)} "
-            f"random points (seed {sample.seed}) of the common range, {ranges}; what each map is off by between its "
+            f"   not all points are shared: films between them, as contact laws read them, at {len(between.places)} "
+            f"random points (seed {between.seed}) of the common range, {ranges}; what each map is off by between its "
             "points is part of the differences"
         )
-        yield from _table(comparison.between.differences, False)
+        yield from _table(between.differences, False)
     if comparison.not_between:
         yield f"   not all points are shared, and nothing is compared between them: {comparison.not_between}"
-
-
-def _range(ends: tuple[float, float], display: Any) -> str:
-    """A range in words."""
-    return f"{display.text(ends[0])} to {display.text(ends[1])}"
 
 
 def _table(differences: Sequence[Difference], stated: bool) -> Iterator[str]:
