@@ -14,7 +14,6 @@ from ehdmaps.jobs.job import Job, check_oil
 from ehdmaps.jobs.job_text import bearing_keys, lubricant_keys, table_lines
 from ehdmaps.jobs.problem import LOAD_AXIS, SPEED_AXIS, AxisRule
 from ehdmaps.jobs.reader import parse_job
-from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import LOAD, RPM, SPEED, TEMPERATURE, Display, quantity
 from mbs.analyses.operating import held
 from mbs.planning import ranges
@@ -48,14 +47,7 @@ def planned_job(scene: Scene, needed: Needed, name: str = "plan") -> Job:
     InputError
         With everything that a job does not allow, or cannot say.
     """
-    text = _job_text(scene, needed)
-    job = parse_job(text, name, f"the job for {', '.join(needed.bearings)}", to_run=True)
-    check_oil(_lubricant(scene), job)
-    return job
-
-
-def _job_text(scene: Scene, needed: Needed) -> str:
-    """Text of the job that covers what the bearings of one geometry need; geometry, oil and temperature are theirs."""
+    assert scene.lubricant is not None  # `plan` saw to it
     geometry = next(entry.geometry for entry in scene.bearings if entry.name == needed.bearings[0])
     lines = [
         f"# What {_plain(scene.name)} needs of a contact map, for {_plain(', '.join(needed.bearings))}.",
@@ -64,7 +56,7 @@ def _job_text(scene: Scene, needed: Needed) -> str:
         "",
         "schema = 1",
         *table_lines("bearing", bearing_keys(geometry)),
-        *table_lines("lubricant", lubricant_keys(_lubricant(scene))),
+        *table_lines("lubricant", lubricant_keys(scene.lubricant)),
         "",
         "[grid]",
         f"load = {_axis(needed.load, LOAD, LOAD_AXIS, LOADS_PER_DECADE)}",
@@ -77,25 +69,9 @@ def _job_text(scene: Scene, needed: Needed) -> str:
         f"law_check = {LAW_CHECK}",
         "",
     ]
-    return "\n".join(lines)
-
-
-def no_lubricant(scene: Scene) -> str:
-    """Say that there is no oil, and what it would be for.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene without one.
-    """
-    return f"got no [lubricant], which {'a map is made for' if scene.bearings else 'films need'}"
-
-
-def _lubricant(scene: Scene) -> Lubricant:
-    """The oil of a scene."""
-    if scene.lubricant is None:
-        raise InputError(f"{scene.name}: {no_lubricant(scene)}; add the table to the scene")
-    return scene.lubricant
+    job = parse_job("\n".join(lines), name, f"the job for {', '.join(needed.bearings)}", to_run=True)
+    check_oil(scene.lubricant, job)
+    return job
 
 
 def _temperature(value: float) -> str:
@@ -171,8 +147,7 @@ class PlanResult:
         InputError
             With everything that a job does not allow.
         """
-        problems = Problems()
-        jobs = []
+        problems, jobs = Problems(), []
         for entry, name in zip(self.needed, names or ["plan"] * len(self.needed), strict=True):
             with problems:
                 jobs.append(planned_job(self.scene, entry, name))
@@ -239,8 +214,39 @@ def plan(scene: Scene, settings: PlanSettings | None = None) -> PlanResult:
     ['NU308']
     """
     settings = settings or PlanSettings()
-    model = _dry_model(scene, settings)
-    return _planned(scene, model, settings)
+    model, oil = _dry_model(scene, settings), scene.lubricant
+    assert oil is not None  # `_dry_model` saw to it
+    steady = (scene.speed, *(scene.sweep.speeds.tolist() if scene.sweep else ()))
+    speeds = ranges.speed_range(steady, scene.run_up.speed.course.values if scene.run_up else ())
+    fastest = [entry.rates[1] * speeds[1] for entry in model.bearings]
+    if max(fastest, default=0.0) > SPEED_AXIS.high:
+        raise InputError(
+            f"{scene.name}: its highest speed {RPM.text(speeds[1])} is an entrainment speed of "
+            f"{SPEED.text(max(fastest))}; allowed: up to {SPEED.text(SPEED_AXIS.high)}, the limit of a map; check units"
+        )
+    mounted = held(model)
+    # Loads that turn would thin the films, whose room is largest where the rotor has no unbalance. An unloaded bearing
+    # has films, too: those of a light load.
+    at_rest = ranges.largest_loads(mounted.system, mounted.on_rings, speeds[1], turning=False)
+    turns = bool(mounted.system.turning)
+    loads = np.array(ranges.largest_loads(mounted.system, mounted.on_rings, speeds[1]) if turns else at_rest)
+    rooms = tuple(
+        ranges.film_room(entry.bearing.geometry, oil, max(load, ranges.LIGHT), speed, scene.temperature)
+        if speed > 0.0
+        else 0.0
+        for entry, load, speed in zip(model.bearings, at_rest, fastest, strict=False)
+    )
+    if rooms:  # in clearances that the films have taken up
+        filled = held(assemble(_dry_scene(model.scene, rooms), "hertz"))
+        loads = np.maximum(loads, ranges.largest_loads(filled.system, filled.on_rings, speeds[1]))
+    for index, (entry, given) in enumerate(zip(model.bearings, scene.bearings, strict=True)):
+        thrown = entry.bearing.centrifugal_load(entry.inner_spin, entry.outer_spin) * speeds[1] ** 2
+        loads[index] += thrown if given.centrifugal else 0.0
+    # of bearings without maps nothing is taken up
+    rooms += (0.0,) * len(model.located)
+    found = ranges.needed_ranges(model.on_rings, loads.tolist(), rooms, speeds, settings.margin, scene.temperature)
+    needed, seen = ([one for one in found if one.mapped is mapped] for mapped in (True, False))
+    return PlanResult(scene, model, speeds, tuple(needed), tuple(seen))
 
 
 def _dry_model(scene: Scene, settings: PlanSettings) -> Model:
@@ -257,7 +263,8 @@ def _dry_model(scene: Scene, settings: PlanSettings) -> Model:
             "out of a copy of the scene, or take a map over many temperatures, such as that of the shipped job nu308"
         )
     if scene.lubricant is None:
-        problems.append(f'{no_lubricant(scene)}; add the table to the scene, such as name = "FVA3"')
+        why = "a map is made for" if scene.bearings else "films need"
+        problems.append(f'got no [lubricant], which {why}; add the table to the scene, such as name = "FVA3"')
     named = [problem if problem.startswith("--") else f"{scene.name}: {problem}" for problem in problems]
     if named or model is None:
         raise InputError(tuple(dict.fromkeys(named)))
@@ -276,47 +283,3 @@ def _dry_scene(scene: Scene, rooms: tuple[float, ...] = ()) -> Scene:
         for entry, room in zip(scene.bearings, rooms or (0.0,) * len(scene.bearings), strict=True)
     )
     return scene.with_bearings(bearings)
-
-
-def _planned(scene: Scene, model: Model, settings: PlanSettings) -> PlanResult:
-    """Speeds of the system, and the ranges that the scene needs."""
-    oil = scene.lubricant
-    assert oil is not None  # `_dry_model` saw to it
-    steady = (scene.speed, *(scene.sweep.speeds.tolist() if scene.sweep else ()))
-    speeds = ranges.speed_range(steady, scene.run_up.speed.course.values if scene.run_up else ())
-    fastest = [entry.rates[1] * speeds[1] for entry in model.bearings]
-    if max(fastest, default=0.0) > SPEED_AXIS.high:
-        raise InputError(
-            f"{scene.name}: its highest speed {RPM.text(speeds[1])} is an entrainment speed of "
-            f"{SPEED.text(max(fastest))}; allowed: up to {SPEED.text(SPEED_AXIS.high)}, the limit of a map; check units"
-        )
-    mounted = held(model)
-    # Loads that turn would thin the films, whose room is largest where the rotor has no unbalance. An unloaded bearing
-    # has films, too: those of a light load.
-    at_rest = ranges.largest_loads(mounted.system, mounted.on_rings, speeds[1], turning=False)
-    turns = bool(mounted.system.turning)
-    dry = ranges.largest_loads(mounted.system, mounted.on_rings, speeds[1]) if turns else at_rest
-    mapped = len(model.bearings)
-    rooms = tuple(
-        ranges.film_room(entry.bearing.geometry, oil, max(load, ranges.LIGHT), speed, scene.temperature)
-        if speed > 0.0
-        else 0.0
-        for entry, load, speed in zip(model.bearings, at_rest[:mapped], fastest, strict=True)
-    )
-    preloaded = dry
-    if mapped:  # in clearances that the films have taken up
-        filled = held(assemble(_dry_scene(model.scene, rooms), "hertz"))
-        preloaded = ranges.largest_loads(filled.system, filled.on_rings, speeds[1])
-    centrifugal = [
-        entry.bearing.centrifugal_load(entry.inner_spin, entry.outer_spin) * speeds[1] ** 2
-        if given.centrifugal
-        else 0.0
-        for entry, given in zip(model.bearings, scene.bearings, strict=True)
-    ]
-    static = [max(pair) for pair in zip(dry, preloaded, strict=True)]
-    loads = [load + more for load, more in zip(static, centrifugal, strict=False)]
-    needed = ranges.needed_ranges(model.bearings, loads, rooms, speeds, settings.margin)
-    others = ranges.needed_ranges(
-        model.located, static[mapped:], [0.0] * len(model.located), speeds, settings.margin, scene.temperature
-    )
-    return PlanResult(scene, model, speeds, needed, others)

@@ -91,6 +91,11 @@ class Needed:
     of_points: bool = False
 
     @property
+    def mapped(self) -> bool:
+        """Whether its bearings have a map, as cylindrical rollers do."""
+        return isinstance(self.geometry, BearingGeometry)
+
+    @property
     def display(self) -> Display:
         """Unit in which its loads are told."""
         return FORCE if self.of_points else LOAD
