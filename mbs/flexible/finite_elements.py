@@ -22,11 +22,9 @@ from scipy import sparse
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import Problems
+from mbs.flexible.factors import most_freedoms, too_many
 from mbs.flexible.plan import UNIT_SYSTEMS
 from mbs.model.body import lever_arm
-
-MOST_FREEDOMS = 300_000
-"""More degrees of freedom are refused: their factors fill tens of gigabytes."""
 
 _OVERREACH = 1.0 + 1e-6
 """Square of an entry over the product of its diagonals, which is at most 1 but for rounding."""
@@ -124,10 +122,9 @@ class FiniteElementModel:
         """List problems with the shapes."""
         size = self.nodes.size
         problems = []
-        if not 1 <= size <= MOST_FREEDOMS or self.nodes.ndim != 1:
+        if not 1 <= size <= most_freedoms() or self.nodes.ndim != 1:
             problems.append(
-                f"finite-element body, nodes: got shape {self.nodes.shape}; allowed: one for each degree of freedom, 1 "
-                f"to {MOST_FREEDOMS} of them; take a coarser mesh"
+                f"finite-element body, nodes: got shape {self.nodes.shape}, one a degree of freedom; {too_many()}"
             )
         if self.directions.shape != self.nodes.shape:
             problems.append(

@@ -9,15 +9,14 @@ by a/(a + omega^2) with omega above the cut-off.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from scipy import linalg, sparse
-from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh, splu
+from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.extras import needs
+from mbs.flexible.factors import SMALL, Factor, factors
 
 MOST_MODES = 300
 
@@ -95,10 +94,10 @@ class HeldBody:
         self._limit = (2.0 * np.pi * cutoff) ** 2
         # Far above rounding, not far above the modes that are wanted.
         self._shift = float(np.clip(self._limit, 1e-8 * self._typical, 1e-4 * self._typical))
-        self._order = elimination_order(stiffness, groups)
+        # PARDISO has an order of its own
+        self._order = elimination_order(stiffness, groups) if stiffness.shape[0] <= SMALL else groups
         self._factor = self._factorised(-self._shift)
-        pivots = self._pivots(self._factor)
-        if pivots is None or np.any(pivots <= 0.0):
+        if self._factor.not_positive != 0:
             raise InputError(_NO_BODY)
         self._spread = self._solve_free(averages.T)
         self._multipliers = self._multiplier_factor()
@@ -144,43 +143,27 @@ class HeldBody:
             "are too badly conditioned: look for elements that are much smaller or stiffer than the others"
         )
 
-    def _factorised(self, square: float) -> Any:
-        """Factors of K - square M, in the order of elimination, pivots on the diagonal."""
-        matrix = sparse.csc_array(self.stiffness - square * self.mass)[self._order][:, self._order]
-        try:
-            return splu(
-                sparse.csc_matrix(matrix), permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-            )
-        except (RuntimeError, MemoryError) as error:
-            raise AnalysisError(
-                f"reduction: the matrices cannot be factorised ({error}); check them, or take a coarser mesh"
-            ) from error
-
-    @staticmethod
-    def _pivots(factor: Any) -> FloatArray | None:
-        """Pivots, whose signs are those of the eigenvalues; None if rows were exchanged."""
-        pivots = np.asarray(factor.U.diagonal(), dtype=np.float64)
-        return pivots if np.array_equal(factor.perm_r, factor.perm_c) else None
+    def _factorised(self, square: float) -> Factor:
+        """Factors of K - square M."""
+        return factors(sparse.csc_array(self.stiffness - square * self.mass), self._order, positive=square < 0.0)
 
     def _count_below(self, square: float) -> int | None:
         """Count modes with an omega^2 below `square`, by the signs of pivots (Sylvester); None if not known."""
+        large = self.stiffness.shape[0] > SMALL
+        if large:  # two factors at a time would not fit into the memory
+            self._factor.free()
         factor = self._factorised(square)
-        pivots = self._pivots(factor)
-        if pivots is None:
-            return None
-        spread = np.empty_like(self.averages.T)
-        if spread.size:
-            spread[self._order] = factor.solve(np.ascontiguousarray(self.averages.T[self._order]))
+        below = factor.not_positive
+        conditions = np.linalg.eigvalsh(self.averages @ factor.solve(np.ascontiguousarray(self.averages.T)))
+        factor.free()
+        if large:
+            self._factor = self._factorised(-self._shift)
         # Each condition takes one negative eigenvalue of the matrix with multipliers for itself.
-        conditions = np.linalg.eigvalsh(self.averages @ spread)
-        return int(np.sum(pivots < 0.0) + np.sum(conditions > 0.0) - self.averages.shape[0])
+        return None if below is None else int(below + np.sum(conditions > 0.0) - self.averages.shape[0])
 
     def _solve_free(self, force: FloatArray) -> FloatArray:
         """(K + a M)^-1 force."""
-        result = np.empty_like(force)
-        if force.size:
-            result[self._order] = self._factor.solve(np.ascontiguousarray(force[self._order]))
-        return result
+        return self._factor.solve(force)
 
     def _multiplier_factor(self) -> tuple[FloatArray, FloatArray] | None:
         """Scale and Cholesky factor of B (K + a M)^-1 B'."""

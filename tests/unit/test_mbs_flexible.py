@@ -17,7 +17,7 @@ class TestModel:
     @pytest.mark.parametrize(
         ("changes", "message"),
         [
-            ({"nodes": np.array([])}, "nodes: got shape .0,.; allowed: one for each degree of freedom"),
+            ({"nodes": np.array([])}, "nodes: got shape .0,., one a degree of freedom; allowed: at most"),
             ({"directions": np.array([0])}, "directions: got shape"),
             ({"mass": sparse.csc_array((5, 6))}, r"mass: got shape \(5, 6\); allowed: \(6, 6\)"),
             ({"positions": np.zeros((2, 2))}, "positions: got shape"),

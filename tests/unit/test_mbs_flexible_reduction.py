@@ -117,7 +117,7 @@ class TestReduction:
     @pytest.mark.parametrize(
         ("name", "value", "message"),
         [
-            ("mbs.flexible.held_body.splu", RuntimeError("singular"), r"cannot be factorised \(singular\)"),
+            ("mbs.flexible.factors.splu", RuntimeError("singular"), r"cannot be factorised \(singular\)"),
             ("mbs.flexible.held_body.eigsh", ArpackError(-9999), "the modes of the held body were not found"),
             ("mbs.flexible.reduction._COUPLED", -1.0, "static shapes and modes are coupled by"),
         ],
@@ -131,6 +131,18 @@ class TestReduction:
         model = block()
         with pytest.raises(AnalysisError, match=message):
             reduce(model, ends(model), cutoff=10e3)
+
+    def test_a_large_body_is_the_same(self, monkeypatch):
+        pytest.importorskip("pypardiso", reason="the extra large: MKL takes 0.7 GB")
+        model = block()
+        monkeypatch.setattr(held_body, "_DENSE", 0)
+        small = reduce(model, ends(model), cutoff=10e3)
+        for place in ("factors", "held_body"):
+            monkeypatch.setattr(f"mbs.flexible.{place}.SMALL", 0)
+        large = reduce(model, ends(model), cutoff=10e3)
+        # both to the accuracy of the modes
+        np.testing.assert_allclose(large.stiffness, small.stiffness, atol=1e-7 * np.abs(small.stiffness).max())
+        np.testing.assert_allclose(np.diag(large.mass), np.diag(small.mass), rtol=1e-7)
 
     def test_points(self):
         model = block()
