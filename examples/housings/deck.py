@@ -40,7 +40,7 @@ def deck(mesh: Mesh, material: Material, clamped: IntArray, count: int, matrices
 
 def _lines(mesh: Mesh, material: Material, clamped: IntArray, count: int, matrices: bool) -> Iterator[str]:
     """The deck, line by line."""
-    yield from solid_lines(SolidMesh(mesh.positions, {"tetra10": mesh.elements}, {}), material)
+    yield from solid_lines(SolidMesh(mesh.positions, {"tetra10": mesh.elements}, {}), {"": material})
     if clamped.size:
         yield "*NSET, NSET=CLAMPED"
         numbers = (clamped + 1).tolist()

@@ -4,21 +4,21 @@
 mesh                   groups of nodes             material
 =====================  ==========================  ========================================
 .msh of Gmsh           physical groups             stated
-.inp of Abaqus         *NSET, *ELSET               *MATERIAL with *ELASTIC and *DENSITY
-.bdf .nas .fem         none                        MAT1
+.inp of Abaqus         *NSET, *ELSET               *MATERIAL, *SOLID SECTION
+.bdf .nas .fem         properties ("property 3")   MAT1, PSOLID
 .med of Salome         groups                      stated
 =====================  ==========================  ========================================
 
 Elements are tetrahedra, wedges and hexahedra of first or second order; shells and beams of the same file, which mesh
-programs write along with solids, are left out, and said. All elements are of one material. CalculiX assembles stiffness
-and mass once, in SI, in a folder that is removed.
+programs write along with solids, are left out, and said. Groups of elements may be of different materials. CalculiX
+assembles stiffness and mass once, in SI, in a folder that is removed.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from io import BytesIO
 from pathlib import Path
 
@@ -75,15 +75,19 @@ else:  # as Gmsh writes them
         whole.write_text("BEGIN BULK\\n" + bulk)
         mesh = meshio.read(whole)
 points = numpy.asarray(mesh.points, dtype=float)
-found, groups, others = {}, {}, set()
+found, groups, others, members, starts = {}, {}, set(), {}, []
 kinds = KINDS
 for block in mesh.cells:
+    starts.append(sum(len(part) for part in found.get(block.type, [])))
     if block.type in kinds:
         found.setdefault(block.type, []).append(block.data)
     else:
         others.add(block.type)
 def add(name, nodes):
     groups[str(name)] = numpy.unique(numpy.concatenate([groups.get(str(name), numpy.zeros(0, int)), nodes]))
+def member(name, k, rows):
+    if mesh.cells[k].type in kinds:
+        members.setdefault((str(name), mesh.cells[k].type), []).append(starts[k] + numpy.asarray(rows, int))
 for name, nodes in mesh.point_sets.items():
     add(name, numpy.asarray(nodes, int).ravel())
 names = {(tag, dim): name for name, (tag, dim) in mesh.field_data.items()}
@@ -95,16 +99,22 @@ for k, block in enumerate(mesh.cells):
             name = names.get((int(tag), dims.get(block.type, 3)))
             if name is not None:
                 add(name, block.data[tags[k] == tag].ravel())
+                member(name, k, numpy.flatnonzero(tags[k] == tag))
+    refs = mesh.cell_data.get("nastran:ref")
+    for ref in numpy.unique(refs[k]) if refs is not None else ():
+        member("property %d" % ref, k, numpy.flatnonzero(refs[k] == ref))
 for name, parts in mesh.cell_sets.items():
-    for block, cells in zip(mesh.cells, parts):
+    for k, (block, cells) in enumerate(zip(mesh.cells, parts)):
         if cells is not None and len(cells):
             add(name, block.data[numpy.asarray(cells, int)].ravel())
+            member(name, k, cells)
 if "point_tags" in mesh.point_data:
     for tag, named in getattr(mesh, "point_tags", {}).items():
         for name in named:
             add(name, numpy.flatnonzero(mesh.point_data["point_tags"] == tag))
 data = {"cells " + kind: numpy.concatenate(blocks) for kind, blocks in found.items()}
 data.update({"group " + name: nodes for name, nodes in groups.items()})
+data.update({"part " + kind + " " + name: numpy.concatenate(rows) for (name, kind), rows in members.items()})
 numpy.savez(output, points=points, others=numpy.array(sorted(others), dtype=str), **data)
 """.replace("KINDS", repr(tuple(_ELEMENTS)))
 
@@ -123,12 +133,15 @@ class SolidMesh:
         Numbers of nodes, from 1, by the name of a group.
     left_out : tuple of str
         Kinds of elements that are no solids.
+    parts : mapping of str to mapping of str to array of int
+        Rows of `elements` by the name of a group of elements, then by kind.
     """
 
     positions: FloatArray
     elements: Mapping[str, IntArray]
     groups: Mapping[str, IntArray]
     left_out: tuple[str, ...] = ()
+    parts: Mapping[str, Mapping[str, IntArray]] = field(default_factory=dict)
 
     @property
     def count(self) -> int:
@@ -176,17 +189,23 @@ def read_solid(path: Path, unit: float) -> SolidMesh:
         raise InputError(f"{path}: got {3 * used.size} degrees of freedom; {too_many()}")
     place = np.full(len(points), -1)
     place[used] = np.arange(used.size)
-    groups = {}
-    for name in found:
+    groups: dict[str, IntArray] = {}
+    parts: dict[str, dict[str, IntArray]] = {}
+    for name, values in found.items():
+        if name.startswith("part "):
+            kind, _, own_name = name.removeprefix("part ").partition(" ")
+            parts.setdefault(own_name, {})[kind] = values
         if name.startswith("group "):
-            own = place[found[name]]
+            own = place[values]
             groups[name.removeprefix("group ")] = np.asarray(own[own >= 0] + 1, dtype=np.int64)
     elements = {kind: np.asarray(place[block], dtype=np.int64) for kind, block in cells.items()}
-    return SolidMesh(unit * points[used], elements, groups, others)
+    return SolidMesh(unit * points[used], elements, groups, others, parts)
 
 
-def materials_of(path: Path) -> list[Material]:
+def materials_of(path: Path) -> dict[str, Material]:
     """Read the materials that a deck of Abaqus or Nastran states, in its own units; none of other meshes.
+
+    They go by the groups of elements that have them; one that no group has, by an empty name.
 
     Parameters
     ----------
@@ -200,40 +219,75 @@ def materials_of(path: Path) -> list[Material]:
     """
     ending = path.suffix.lower()
     if ending not in (".inp", ".bdf", ".nas", ".fem"):
-        return []
+        return {}
     lines = read_text(path, LONGEST_FILE, "a mesh").splitlines()
-    rows = _abaqus(lines) if ending == ".inp" else _nastran(lines)
+    rows, sections = (_abaqus(lines), _sections(lines)) if ending == ".inp" else (_nastran(lines), _properties(lines))
     problems = Problems()
-    found = []
-    for modulus, ratio, density in rows:
+    found = {}
+    for name, (modulus, ratio, density) in rows:
         with problems:
-            found.append(Material(modulus, ratio, density))
+            found[name] = Material(modulus, ratio, density)
     if problems:
         raise InputError([f"{path}: material: {problem}" for problem in problems])
-    return list(dict.fromkeys(found))
+    alone = list(dict.fromkeys(found.values()))
+    if len(alone) < 2:
+        return dict.fromkeys(("",) * len(alone), *alone)
+    told = {group: found[name] for group, name in sections if name in found}
+    if not told:
+        raise InputError(
+            f"{path}: material: got {len(alone)}, and no section that says which elements have them; allowed: *SOLID "
+            "SECTION of Abaqus, PSOLID of Nastran; or --material 'GROUP = MATERIAL'"
+        )
+    return told
 
 
-def _abaqus(lines: list[str]) -> Iterator[tuple[float, float, float]]:
-    """Modulus, ratio and density of each *MATERIAL."""
+def _keyword(line: str) -> tuple[str, dict[str, str]]:
+    """A keyword of Abaqus and its parameters, in capitals."""
+    words = [word.strip() for word in line.strip().split(",")]
+    pairs = (word.partition("=") for word in words[1:])
+    return words[0].upper(), {key.strip().upper(): value.strip() for key, _, value in pairs}
+
+
+def _sections(lines: list[str]) -> Iterator[tuple[str, str]]:
+    """Set of elements and material of each *SOLID SECTION."""
+    for line in lines:
+        if line.lstrip().upper().startswith("*SOLID SECTION"):
+            _, given = _keyword(line)
+            yield given.get("ELSET", ""), given.get("MATERIAL", "").upper()
+
+
+def _properties(lines: list[str]) -> Iterator[tuple[str, str]]:
+    """Group of elements and material of each PSOLID."""
+    for line in lines:
+        if line.upper().startswith("PSOLID"):
+            wide = 16 if line.upper().startswith("PSOLID*") else 8
+            fields = line.split(",") if "," in line else [line[at : at + wide] for at in (8, 8 + wide)]
+            pid, mid = (text.strip() for text in (fields[1:3] if "," in line else fields))
+            yield f"property {pid}", mid
+
+
+def _abaqus(lines: list[str]) -> Iterator[tuple[str, tuple[float, float, float]]]:
+    """Name, modulus, ratio and density of each *MATERIAL."""
     values: dict[str, list[float]] = {}
+    name = ""
 
-    def done() -> Iterator[tuple[float, float, float]]:
+    def done() -> Iterator[tuple[str, tuple[float, float, float]]]:
         if "ELASTIC" in values:
             modulus, ratio = (values["ELASTIC"] + [0.3, 0.3])[:2]
-            yield modulus, ratio, values.get("DENSITY", [0.0])[0]
+            yield name, (modulus, ratio, values.get("DENSITY", [0.0])[0])
 
     for k, line in enumerate(lines):
         keyword = line.strip().upper().split(",")[0]
         if keyword == "*MATERIAL":
             yield from done()
-            values = {}
+            values, name = {}, _keyword(line)[1].get("NAME", "").upper()
         elif keyword in ("*ELASTIC", "*DENSITY") and k + 1 < len(lines):
             values[keyword[1:]] = [_number(text) for text in lines[k + 1].split(",") if text.strip()]
     yield from done()
 
 
-def _nastran(lines: list[str]) -> Iterator[tuple[float, float, float]]:
-    """Modulus, ratio and density of each MAT1."""
+def _nastran(lines: list[str]) -> Iterator[tuple[str, tuple[float, float, float]]]:
+    """Number, modulus, ratio and density of each MAT1."""
     for k, line in enumerate(lines):
         if not line.upper().startswith("MAT1"):
             continue
@@ -248,7 +302,8 @@ def _nastran(lines: list[str]) -> Iterator[tuple[float, float, float]]:
         modulus, shear, ratio = (_number(text) if text else 0.0 for text in fields[2:5])
         if not ratio and modulus and shear:
             ratio = 0.5 * modulus / shear - 1.0
-        yield modulus or 2.0 * shear * (1.0 + ratio), ratio, _number(fields[5]) if fields[5] else 0.0
+        density = _number(fields[5]) if fields[5] else 0.0
+        yield fields[1], (modulus or 2.0 * shear * (1.0 + ratio), ratio, density)
 
 
 def _number(text: str) -> float:
@@ -259,15 +314,15 @@ def _number(text: str) -> float:
         return float("nan")
 
 
-def assembled(mesh: SolidMesh, material: Material, folder: Path) -> tuple[Path, Path, Path, Path]:
+def assembled(mesh: SolidMesh, materials: Mapping[str, Material], folder: Path) -> tuple[Path, Path, Path, Path]:
     """Have CalculiX assemble stiffness and mass of a free body, in SI.
 
     Parameters
     ----------
     mesh : SolidMesh
         The mesh.
-    material : Material
-        Material of all elements.
+    materials : mapping of str to Material
+        See `solid_lines`.
     folder : Path
         An empty folder for its files.
 
@@ -284,20 +339,25 @@ def assembled(mesh: SolidMesh, material: Material, folder: Path) -> tuple[Path, 
         If it fails.
     """
     step = ("*STEP", "*FREQUENCY, SOLVER=MATRIXSTORAGE", "1", "*END STEP")
-    run_deck("\n".join((*solid_lines(mesh, material), *step)) + "\n", folder, JOB, "assembling a mesh")
+    run_deck("\n".join((*solid_lines(mesh, materials), *step)) + "\n", folder, JOB, "assembling a mesh")
     stiffness, mass, dofs, deck = (folder / f"{JOB}.{ending}" for ending in ("sti", "mas", "dof", "inp"))
     return stiffness, mass, dofs, deck
 
 
-def solid_lines(mesh: SolidMesh, material: Material) -> Iterator[str]:
-    """Lines of a deck of CalculiX up to its steps: nodes, elements, material.
+def solid_lines(mesh: SolidMesh, materials: Mapping[str, Material]) -> Iterator[str]:
+    """Lines of a deck of CalculiX up to its steps: nodes, elements, materials.
 
     Parameters
     ----------
     mesh : SolidMesh
         The mesh.
-    material : Material
-        Material of all elements.
+    materials : mapping of str to Material
+        Materials by groups of elements; that of the empty name is of all others.
+
+    Raises
+    ------
+    InputError
+        If an element has no material.
     """
     yield "*NODE, NSET=ALL"
     # CalculiX reads no more than 20 characters a number.
@@ -308,9 +368,36 @@ def solid_lines(mesh: SolidMesh, material: Material) -> Iterator[str]:
         yield f"*ELEMENT, TYPE={_ELEMENTS[kind]}, ELSET=SOLID"
         for nodes in (cells + 1).tolist():
             number += 1
-            words = [str(number), *map(str, nodes)]
-            parts = [",".join(words[at : at + _PER_LINE]) for at in range(0, len(words), _PER_LINE)]
-            yield ",\n".join(parts)
-    yield from ("*MATERIAL, NAME=MATERIAL", "*ELASTIC", f"{material.youngs_modulus:.12e},{material.poisson_ratio:.12e}")
-    yield from ("*DENSITY", f"{material.density:.12e}")
-    yield "*SOLID SECTION, ELSET=SOLID, MATERIAL=MATERIAL"
+            yield from _listed(str(number), *map(str, nodes))
+    names = list(materials)
+    for place, numbers in enumerate(_of_materials(mesh, names)):
+        material = materials[names[place]]
+        yield f"*ELSET, ELSET=PART{place}"
+        yield from _listed(*map(str, numbers.tolist()), ends=True)
+        yield f"*MATERIAL, NAME=MATERIAL{place}"
+        yield from ("*ELASTIC", f"{material.youngs_modulus:.12e},{material.poisson_ratio:.12e}")
+        yield from ("*DENSITY", f"{material.density:.12e}")
+        yield f"*SOLID SECTION, ELSET=PART{place}, MATERIAL=MATERIAL{place}"
+
+
+def _listed(*words: str, ends: bool = False) -> Iterator[str]:
+    """Lines of a list; each is whole, or goes on with the next one."""
+    parts = [",".join(words[at : at + _PER_LINE]) for at in range(0, len(words), _PER_LINE)]
+    yield ("\n" if ends else ",\n").join(parts)
+
+
+def _of_materials(mesh: SolidMesh, names: list[str]) -> Iterator[IntArray]:
+    """Numbers of the elements of each group; the empty name has what no other one has."""
+    owner = np.full(mesh.count, names.index("") if "" in names else -1)
+    for place, name in enumerate(names):
+        first = 0
+        for kind, cells in mesh.elements.items():
+            owner[first + mesh.parts.get(name, {}).get(kind, np.zeros(0, dtype=np.int64))] = place
+            first += len(cells)
+    if np.any(owner < 0):
+        raise InputError(
+            f"--material: {int(np.sum(owner < 0))} of {mesh.count} elements have none; allowed: one for all others, "
+            f"without a group; groups: {', '.join(mesh.parts) or 'none'}"
+        )
+    for place in range(len(names)):
+        yield np.flatnonzero(owner == place) + 1

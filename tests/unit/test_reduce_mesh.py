@@ -12,6 +12,7 @@ import mbs.cli
 from ehdmaps.errors import InputError
 from ehdmaps.physics.solids import Material
 from ehdmaps.solids.calculix import run_deck
+from mbs.flexible.matrix_files import read_dofs, read_triplets
 from mbs.flexible.reduced_file import read_reduced
 from mbs.flexible.solid_mesh import MATERIALS, assembled, materials_of, read_solid, solid_lines
 from tests.cases.programs import needed
@@ -50,7 +51,7 @@ def test_a_mesh_has_its_nodes_groups_and_material(deck) -> None:
     assert mesh.count == 48 and set(mesh.groups) == {"LEFT", "RIGHT"}
     assert np.ptp(mesh.positions, axis=0) == pytest.approx(1e-3 * SIZE)
     assert np.all(mesh.positions[mesh.groups["RIGHT"] - 1, 0] == 0.06)
-    assert materials_of(deck) == [Material(110e3, 0.25, 7.2e-9)]
+    assert materials_of(deck) == {"": Material(110e3, 0.25, 7.2e-9)}
 
 
 @pytest.mark.parametrize(
@@ -72,9 +73,56 @@ def test_a_mesh_has_its_nodes_groups_and_material(deck) -> None:
 def test_materials_of_decks(tmp_path, name, text, found) -> None:
     path = tmp_path / name
     path.write_text(text)
-    assert [(one.youngs_modulus, one.poisson_ratio, one.density) for one in materials_of(path)] == [
+    assert [(one.youngs_modulus, one.poisson_ratio, one.density) for one in materials_of(path).values()] == [
         pytest.approx(row) for row in found
     ]
+
+
+def halves(tmp_path):
+    """The block as a deck of two sets of elements, each with a material."""
+    mesh = block()
+    left = mesh.points[mesh.cells[0].data].mean(axis=1)[:, 0] < 0.5 * SIZE[0]
+    mesh.cell_sets = {"IN": [np.flatnonzero(left)], "OUT": [np.flatnonzero(~left)]}
+    path = tmp_path / "two.inp"
+    mesh.write(path, file_format="abaqus")
+    more = "".join(
+        f"*MATERIAL, NAME={name}\n*ELASTIC\n{modulus}, {ratio}\n*DENSITY\n{density}\n"
+        for name, modulus, ratio, density in (("iron", 110e3, 0.25, 7.2e-9), ("alu", 70e3, 0.33, 2.7e-9))
+    )
+    sections = "*SOLID SECTION, ELSET=IN, MATERIAL=Iron\n*SOLID SECTION, ELSET=OUT, MATERIAL=ALU\n"
+    path.write_text(path.read_text() + more + sections)
+    return path
+
+
+def test_materials_by_groups_of_elements(tmp_path) -> None:
+    path = halves(tmp_path)
+    assert materials_of(path) == {"IN": Material(110e3, 0.25, 7.2e-9), "OUT": Material(70e3, 0.33, 2.7e-9)}
+    path.write_text(re.sub(r"(?m)^\*SOLID.*\n", "", path.read_text()))
+    with pytest.raises(InputError, match="got 2, and no section that says which elements have them"):
+        materials_of(path)
+    mesh = read_solid(path, 1e-3)
+    assert {name: sum(map(len, rows.values())) for name, rows in mesh.parts.items()} == {"IN": 24, "OUT": 24}
+    with pytest.raises(
+        InputError,
+        match=r"--material: 24 of 48 elements have none; allowed: one for all others, without a group; groups: IN, OUT",
+    ):
+        list(solid_lines(mesh, {"IN": MATERIALS["steel"]}))
+
+
+@pytest.mark.slow
+def test_a_body_of_two_materials_has_the_mass_of_both(tmp_path) -> None:
+    needed("ccx")
+    mesh = read_solid(halves(tmp_path), 1e-3)
+    folder = tmp_path / "ccx"
+    folder.mkdir()
+    _, mass, dofs, _ = assembled(mesh, {"": MATERIALS["steel"], "OUT": MATERIALS["aluminium"]}, folder)
+    labels = read_dofs(dofs)
+    matrix = read_triplets(mass, *labels).matrix
+    along = (labels[1] == 0).astype(float)
+    half = 0.5e-9 * float(np.prod(SIZE))
+    # consistent mass of second order: exact but for the digits of the file
+    expected = half * (MATERIALS["steel"].density + MATERIALS["aluminium"].density)
+    assert along @ (matrix @ along) == pytest.approx(expected, rel=1e-9)
 
 
 def run(capsys, *words: str) -> tuple[int, str, str]:
@@ -141,7 +189,9 @@ def test_a_block_is_that_of_calculix(deck, tmp_path, capsys) -> None:
     assert np.all(np.sqrt(np.abs(rigid)) / (2.0 * np.pi) < 1e-3 * elastic[0])
     mesh = read_solid(deck, 1e-3)
     step = ("*STEP", "*FREQUENCY", "16", "*END STEP")
-    run_deck("\n".join((*solid_lines(mesh, Material(110e9, 0.25, 7200.0)), *step)) + "\n", tmp_path, "own", "the test")
+    run_deck(
+        "\n".join((*solid_lines(mesh, {"": Material(110e9, 0.25, 7200.0)}), *step)) + "\n", tmp_path, "own", "the test"
+    )
     rows = [line.split() for line in (tmp_path / "own.dat").read_text().splitlines()]
     own = [float(row[3]) for row in rows if len(row) == 5 and re.fullmatch(r"\d+", row[0])][6:16]
     assert elastic == pytest.approx(own, rel=1e-3)
@@ -156,7 +206,7 @@ def test_all_kinds_of_elements_are_assembled(tmp_path) -> None:
     meshio.Mesh(cube, cells).write(path, file_format="gmsh22", binary=False)
     mesh = read_solid(path, 1.0)
     assert mesh.count == 2
-    _, mass, dofs, _ = assembled(mesh, MATERIALS["steel"], tmp_path)
+    _, mass, dofs, _ = assembled(mesh, {"": MATERIALS["steel"]}, tmp_path)
     rows = np.loadtxt(mass, ndmin=2)
     whole = np.sum(np.where(rows[:, 0] == rows[:, 1], 1.0, 2.0) * rows[:, 2]) / 3.0
     assert whole == pytest.approx(7850.0 * (0.5 + 1.0 / 6.0), rel=1e-9)

@@ -12,6 +12,7 @@ import numpy as np
 
 from ehdmaps.errors import InputError, Problems, closest, short
 from ehdmaps.extras import lacking
+from ehdmaps.jobs.make.status import duration, tell
 from ehdmaps.outputs import Output, output_problems
 from ehdmaps.physics.solids import Material
 from ehdmaps.solids.calculix import program
@@ -86,12 +87,18 @@ def reduced_mesh(arguments: argparse.Namespace) -> tuple[ReductionPlan, FiniteEl
         problems.append(f"--seat: got none; allowed: {SEAT}")
     target = Path(arguments.output or path.with_suffix(".nc"))
     problems += output_problems([Output("-o", target, REDUCED)], [path])
-    unit, material, words = 1.0, MATERIALS["steel"], ""
+    unit, materials, words = 1.0, dict[str, Material](), ""
     with problems:
-        unit, material, words = _material(path, arguments.units, arguments.material)
+        unit, materials, words = _materials(path, arguments.units, arguments.material)
     problems.check()
     began = time.process_time()
     mesh = read_solid(path, unit)
+    problems += [
+        f"--material: got the group {name!r:.60}{closest(name, tuple(mesh.parts))}; allowed: "
+        f"{', '.join(mesh.parts) or 'no group: the mesh has none of elements'}"
+        for name in materials
+        if name and name not in mesh.parts
+    ]
     interfaces: dict[str, PlannedInterface] = {}
     points: dict[str, PlannedPoint] = {}
     for option, texts, kind in (("seat", arguments.seat, "averaging"), ("foot", arguments.foot, "rigid")):
@@ -106,13 +113,16 @@ def reduced_mesh(arguments: argparse.Namespace) -> tuple[ReductionPlan, FiniteEl
             name, place = _point(mesh, text)
             points[name] = place
     problems.check()
+    tell(f"{path}: {_effort(mesh)}")
     with tempfile.TemporaryDirectory(prefix="mbs-reduce-") as folder:
-        stiffness, mass, dofs, deck = assembled(mesh, material, Path(folder))
+        stiffness, mass, dofs, deck = assembled(mesh, materials, Path(folder))
+        tell(f"{path}: assembled by CalculiX")
         plan = ReductionPlan("calculix", stiffness, mass, deck, dofs, "SI", cutoff, interfaces, points)
         model = read_model(plan)
         about = {"command": f"mbs reduce {path.name}", "mesh": path.name, "material": words}
         reduced = reduce_model(plan, model, about)
     sizes = extent(model)
+    tell(f"{path}: reduced")
     lines = [
         f"{path}: {mesh.count} elements, {len(mesh.positions)} nodes; {words}",
         *([f"  left out: {', '.join(mesh.left_out)}"] if mesh.left_out else []),
@@ -122,6 +132,21 @@ def reduced_mesh(arguments: argparse.Namespace) -> tuple[ReductionPlan, FiniteEl
     return plan, model, reduced, lines
 
 
+_FIXED, _EACH, _TIME, _SIZE, _POWER = 0.5, 11e-6, 27.0, 39e3, 1.25
+"""Memory [GB] of any body and of each degree of freedom; processor time [s] of a body of a size, and its power: fitted to
+boxes of 13 000 and 326 000 nodes."""
+
+
+def _effort(mesh: SolidMesh) -> str:
+    """Size of a mesh, and about how long it takes and how much memory."""
+    size = 3 * len(mesh.positions)
+    seconds = _TIME * (size / _SIZE) ** _POWER
+    return (
+        f"{mesh.count} elements, {size} degrees of freedom; about {duration(seconds)} and {_FIXED + _EACH * size:.2g} GB "
+        "beside CalculiX"
+    )
+
+
 def _count(planned: PlannedInterface, model: FiniteElementModel) -> int:
     """Number of nodes of an interface."""
     from mbs.flexible.carry_out import interface_nodes
@@ -129,38 +154,53 @@ def _count(planned: PlannedInterface, model: FiniteElementModel) -> int:
     return int(interface_nodes(planned, model).size)
 
 
-def _material(path: Path, units: str | None, material: str | None) -> tuple[float, Material, str]:
-    """Unit of the lengths of a mesh, its material in SI, and both in words."""
+def _materials(path: Path, units: str | None, given: list[str] | None) -> tuple[float, dict[str, Material], str]:
+    """Unit of the lengths of a mesh, its materials in SI by groups of elements, and both in words."""
     if units is not None and units not in UNITS:
         raise InputError(f"--units: got {units!r:.40}{closest(units, tuple(UNITS))}; allowed: {', '.join(UNITS)}")
-    if material is not None:
+    if given:
         if units is None:
             raise InputError(f"--units: got none; allowed: {' or '.join(UNITS)}, the unit of the lengths of {path}")
-        if material not in MATERIALS:
-            allowed = ", ".join(MATERIALS)
-            raise InputError(
-                f"--material: got {short(material)}{closest(material, tuple(MATERIALS))}; allowed: {allowed}"
-            )
-        found = MATERIALS[material]
-        return UNITS[units], found, f"{material} as stated, {_words(found)}"
+        found: dict[str, Material] = {}
+        for text in given:
+            group, _, name = (part.strip() for part in text.rpartition("="))
+            if name not in MATERIALS:
+                allowed = f"{', '.join(MATERIALS)}, or 'GROUP = MATERIAL' for elements of a group"
+                raise InputError(f"--material: got {short(name)}{closest(name, tuple(MATERIALS))}; allowed: {allowed}")
+            if group in found:
+                raise InputError(f"--material: got {short(group or 'all')} twice; allowed: one for each group")
+            found[group] = MATERIALS[name]
+        told = [f"{group or 'all others' if given[1:] else ''} {name}".strip() for group, name in _told(given)]
+        return UNITS[units], found, f"{', '.join(told)} as stated, {_each(found)}"
     stated = materials_of(path)
-    if len(stated) != 1:
-        what = "no material" if not stated else f"{len(stated)} materials"
-        raise InputError(
-            f"--material: got none, and {path} has {what}; allowed: one for all elements, {', '.join(MATERIALS)}"
-        )
+    if not stated:
+        raise InputError(f"--material: got none, and {path} has no material; allowed: {', '.join(MATERIALS)}")
     # Young's moduli of metals: 1e10 Pa and more, in N/mm2 1e4 and more.
-    in_mm = stated[0].youngs_modulus < 1e8
+    largest = max(one.youngs_modulus for one in stated.values())
+    in_mm = largest < 1e8
     if units is not None and in_mm != (units == "mm"):
         raise InputError(
-            f"--units: got {units!r}, but E is {stated[0].youngs_modulus:.4g} in {path}; allowed: "
-            f"{'mm' if in_mm else 'm'}, in which that is a metal; or state --material"
+            f"--units: got {units!r}, but E is {largest:.4g} in {path}; allowed: {'mm' if in_mm else 'm'}, in which "
+            "that is a metal; or state --material"
         )
     # In mm, t, s: N/mm2 and t/mm3.
     factor, heavier = (1e6, 1e12) if in_mm else (1.0, 1.0)
-    own = Material(factor * stated[0].youngs_modulus, stated[0].poisson_ratio, heavier * stated[0].density)
+    own = {
+        name: Material(factor * one.youngs_modulus, one.poisson_ratio, heavier * one.density)
+        for name, one in stated.items()
+    }
     unit = "mm" if in_mm else "m"
-    return UNITS[unit], own, f"material of the file, {_words(own)}; lengths in {unit}"
+    return UNITS[unit], own, f"material of the file, {_each(own)}; lengths in {unit}"
+
+
+def _told(given: list[str]) -> list[tuple[str, str]]:
+    """Groups and names of materials."""
+    return [(group.strip(), name.strip()) for group, _, name in (text.rpartition("=") for text in given)]
+
+
+def _each(materials: dict[str, Material]) -> str:
+    """Materials in words."""
+    return "; ".join(f"{f'{name}: ' if name else ''}{_words(one)}" for name, one in materials.items())
 
 
 def _words(material: Material) -> str:
