@@ -133,18 +133,15 @@ def reduced_mesh(arguments: argparse.Namespace) -> tuple[ReductionPlan, FiniteEl
 
 
 _FIXED, _EACH, _TIME, _SIZE, _POWER = 0.5, 11e-6, 27.0, 39e3, 1.25
-"""Memory [GB] of any body and of each degree of freedom; processor time [s] of a body of a size, and its power: fitted to
-boxes of 13 000 and 326 000 nodes."""
+"""Memory [GB] of any body and of each degree of freedom; processor time [s] of a body of a size, and its power: fitted
+to boxes of 13 000 and 326 000 nodes."""
 
 
 def _effort(mesh: SolidMesh) -> str:
     """Size of a mesh, and about how long it takes and how much memory."""
     size = 3 * len(mesh.positions)
-    seconds = _TIME * (size / _SIZE) ** _POWER
-    return (
-        f"{mesh.count} elements, {size} degrees of freedom; about {duration(seconds)} and {_FIXED + _EACH * size:.2g} GB "
-        "beside CalculiX"
-    )
+    lasting, memory = duration(_TIME * (size / _SIZE) ** _POWER), _FIXED + _EACH * size
+    return f"{mesh.count} elements, {size} degrees of freedom; about {lasting} and {memory:.2g} GB beside CalculiX"
 
 
 def _count(planned: PlannedInterface, model: FiniteElementModel) -> int:
