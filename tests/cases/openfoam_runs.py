@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import subprocess
-import time
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -17,6 +16,7 @@ from ehdmaps.openfoam.grid_solver import GridSolution, GridSolver
 from ehdmaps.openfoam.installation import Installation, installation
 from ehdmaps.openfoam.parameters import Flow, Parameters
 from ehdmaps.openfoam.results import Results
+from ehdmaps.openfoam.run import TimeLimit
 from ehdmaps.openfoam.solver import OpenFoamSolver
 from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.lubricant import Lubricant
@@ -58,7 +58,7 @@ def parameters(
 
 def run(settings: Parameters, keep: Path | None = None) -> GridSolution:
     """Run one case; where `keep` is given its folder stays there, with its fields."""
-    return GridSolver(installation(), keep).run_case(settings, "case", False, time.monotonic() + 300.0)
+    return GridSolver(installation(), keep).run_case(settings, "case", False, TimeLimit(300.0))
 
 
 @cache
