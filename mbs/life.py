@@ -86,10 +86,13 @@ def ball_reference_life(
     both = 1.044 * ((1.0 - geometry.gamma) / (1.0 + geometry.gamma)) ** 1.72
     both *= (inner / outer * (2.0 * outer - 1.0) / (2.0 * inner - 1.0)) ** 0.41
     rows = len(geometry.rows)
-    ball = dynamic_rating / (geometry.balls * (geometry.ball_rows * math.cos(geometry.contact_angle)) ** 0.7)
+    of_ball, inner_part, outer_part = (geometry.ball_rows * math.cos(geometry.contact_angle)) ** 0.7, 0.407, 0.389
+    if geometry.thrust:  # whose rating is axial
+        of_ball, inner_part, outer_part = 1.0, 1.0, 1.0
+    ball = dynamic_rating / (geometry.balls * of_ball)
     capacities = (
-        ball / 0.407 * (1.0 + both ** (10.0 / 3.0)) ** 0.3,
-        ball / 0.389 * (1.0 + both ** (-10.0 / 3.0)) ** 0.3,
+        ball / inner_part * (1.0 + both ** (10.0 / 3.0)) ** 0.3,
+        ball / outer_part * (1.0 + both ** (-10.0 / 3.0)) ** 0.3,
     )
     powers = (3.0, 10.0 / 3.0) if inner_turns else (10.0 / 3.0, 3.0)
     total = 0.0
@@ -107,8 +110,9 @@ def roller_reference_life(
     *,
     inner_turns: bool = True,
     edges: bool = True,
+    rows: int = 1,
 ) -> ReferenceLife:
-    """Life of a row of rollers.
+    """Life of a bearing with rollers.
 
     Parameters
     ----------
@@ -125,18 +129,21 @@ def roller_reference_life(
     edges : bool
         Whether loads count with the factor of the standard for stress at the ends of a roller, 2.3 at the last of many
         slices. C allows for ends; without the factor straight rollers live three times as long.
+    rows : int
+        Number of rows, of whose rollers one stands behind the other in `slices`.
     """
-    count, number = slices.shape[1:]
+    count, number = slices.shape[1] // rows, slices.shape[2]
     if edges:
         slices = slices * _ends(number)
     both = (1.038 * ((1.0 - gamma) / (1.0 + gamma)) ** (143.0 / 108.0)) ** 4.5
-    roller = dynamic_rating / (_REDUCTION * count * math.cos(angle))
+    roller = dynamic_rating / (_REDUCTION * count * math.cos(angle) * rows ** (7.0 / 9.0))
     inner = roller / 0.378 * (1.0 + both) ** (2.0 / 9.0)
     outer = roller / 0.364 * (1.0 + 1.0 / both) ** (2.0 / 9.0)
     powers = (4.0, 4.5) if inner_turns else (4.5, 4.0)
     total = 0.0
     for loads, capacity, power in zip(slices, (inner, outer), powers, strict=True):
-        mean = np.mean(loads**power, axis=0) ** (1.0 / power)
+        of_row = loads.reshape(rows, count, number)
+        mean = np.mean(of_row**power, axis=1) ** (1.0 / power)
         total += float(np.sum((mean / (capacity * number ** (-7.0 / 9.0))) ** 4.5))
     return _with_life(dynamic_rating, total, 8.0 / 9.0, 10.0 / 3.0)
 

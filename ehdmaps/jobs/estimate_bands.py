@@ -162,8 +162,8 @@ def _answer(
     """
     mine, at, contacts = 1.0, point, list(job.contacts)
     if bearing is not None and job.bearing is not None:
-        mine = bearing.rollers * bearing.roller_length
-        share = job.bearing.rollers * job.bearing.roller_length / mine
+        mine = bearing.rolling_elements * bearing.roller_length
+        share = job.bearing.rolling_elements * job.bearing.roller_length / mine
         speed = bearing.entrainment_speed(job.bearing.inner_speed(point.entrainment_speed))
         at = OperatingPoint(point.load * share, speed, point.temperature)
         law = job.contacts[0].structural_law

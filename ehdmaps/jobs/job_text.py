@@ -202,6 +202,8 @@ def bearing_keys(geometry: BearingGeometry) -> BearingKeys:
     elif geometry.estimated is None:
         keys = {key: _quantity(getattr(geometry, key), "m") for key in _BEARING_LENGTHS}
         keys["rollers"] = geometry.rollers
+        if geometry.row_distance is not None:
+            keys["row_distance"] = _quantity(geometry.row_distance, "m")
     else:
         keys = _estimate_keys(plain)
     by_designation = reach is not None and reach.taken == MOUNTED and geometry.diametral_clearance == reach.clearance

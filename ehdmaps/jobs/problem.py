@@ -173,7 +173,8 @@ def _listed(entries: list[object], grid: Table, rule: AxisRule) -> tuple[float, 
 Built = TypeVar("Built")
 
 _BEARING_LENGTHS = ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length")
-_BEARING_KEYS = (*_BEARING_LENGTHS, "rollers", "diametral_clearance")
+_ROLLER_KEYS = (*_BEARING_LENGTHS, "rollers", "row_distance")
+_BEARING_KEYS = (*_ROLLER_KEYS, "diametral_clearance")
 
 _CATALOGUE_LENGTHS = ("bore", "outside_diameter", "width")
 _CATALOGUE_FORM = '{ bore = "30 mm", outside_diameter = "62 mm", width = "16 mm" } with basic_static_rating'
@@ -293,7 +294,7 @@ def _bearing(section: Table) -> BearingGeometry | None:
         if known is None:
             return _estimate(section, "name", label)
         clearance = _clearance(section)
-        for key in (*_BEARING_LENGTHS, "rollers"):
+        for key in _ROLLER_KEYS:
             if key in section:
                 section.get(key)
                 section.note(key, "stands beside name; allowed: a name, or dimensions without a name; delete one")
@@ -308,6 +309,7 @@ def _bearing(section: Table) -> BearingGeometry | None:
         return None
     lengths = [section.quantity(key, "m", 1e-5, 100.0, LENGTH, required=True) for key in _BEARING_LENGTHS]
     rollers = section.integer("rollers", 1, 10000, required=True)
+    apart = section.quantity("row_distance", "m", 1e-5, 100.0, LENGTH)
     play = _clearance(section)
     if "diametral_clearance" not in section:
         section.note("diametral_clearance", 'missing; allowed: a length; "0 mm" if unknown')
@@ -317,7 +319,10 @@ def _bearing(section: Table) -> BearingGeometry | None:
         return None
     roller = f"{diameter * 1e3:g} x {length * 1e3:g} mm"
     name = f"bearing {inner * 1e3:g}/{outer * 1e3:g} mm, {rollers} rollers {roller}"
-    return _built(section, lambda: BearingGeometry(name, inner, outer, diameter, length, rollers, play, label))
+    return _built(
+        section,
+        lambda: BearingGeometry(name, inner, outer, diameter, length, rollers, play, label, row_distance=apart),
+    )
 
 
 def _known(section: Table) -> BearingGeometry | None:
@@ -336,7 +341,7 @@ def _estimate(section: Table, word: str, label: str | None) -> BearingGeometry |
     value = section.get(word)
     rating = section.quantity("basic_static_rating", "N", 1e2, 1e9, Display("kN", 1e-3))
     clearance = _clearance(section)
-    for key in ("name", *_BEARING_LENGTHS, "rollers"):
+    for key in ("name", *_ROLLER_KEYS):
         if key in section and key != word:
             section.get(key)
             section.note(key, f"stands beside {word}; allowed: one of the two; delete one")

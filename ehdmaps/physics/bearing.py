@@ -28,7 +28,7 @@ class BearingGeometry(Named):
     roller_diameter, roller_length : float
         D and L [m], L the effective length.
     rollers : int
-        Number Z of rollers.
+        Number Z of rollers of a row.
     diametral_clearance : float
         P_d [m], < 0 for a preloaded bearing. It is an input of its own and not checked against the raceways.
     label : str or None
@@ -40,6 +40,8 @@ class BearingGeometry(Named):
         it is stated.
     spelled : str or None
         What each part of the designation means; no part of what makes bearings equal, nor of records.
+    row_distance : float or None
+        Distance between the middles of two rows of such rollers, which stand side by side [m]; None for one row.
 
     Raises
     ------
@@ -65,6 +67,7 @@ class BearingGeometry(Named):
     estimated: str | None = None
     clearance_range: ClearanceRange | None = field(default=None, compare=False)
     spelled: str | None = field(default=None, compare=False)
+    row_distance: float | None = None
 
     def __post_init__(self) -> None:
         problems = _problems(self)
@@ -86,6 +89,26 @@ class BearingGeometry(Named):
             raise InputError(
                 f"bearing name: got {name!r}; allowed: {', '.join(BEARINGS)}; give other bearings by their dimensions"
             ) from None
+
+    @property
+    def row_count(self) -> int:
+        """Number of its rows."""
+        return len(self.row_places)
+
+    @property
+    def row_places(self) -> tuple[float, ...]:
+        """Places of its rows along the axis [m]."""
+        return (0.0,) if self.row_distance is None else (-0.5 * self.row_distance, 0.5 * self.row_distance)
+
+    @property
+    def row_words(self) -> str:
+        """Its rows in words, behind the number of rollers; empty for one."""
+        return "" if self.row_distance is None else f" in 2 rows, {1e3 * self.row_distance:.4g} mm apart"
+
+    @property
+    def rolling_elements(self) -> int:
+        """Number of its rollers, of all rows."""
+        return self.rollers * self.row_count
 
     @property
     def pitch_diameter(self) -> float:
@@ -254,6 +277,12 @@ def _problems(bearing: BearingGeometry) -> list[str]:
     if not lengths_known:
         return problems
 
+    apart = bearing.row_distance
+    if apart is not None and not bearing.roller_length < apart < math.inf:
+        problems.append(
+            f"{where}, row_distance: got {apart!r} m; allowed: finite, and more than the roller_length "
+            f"{bearing.roller_length!r} m, lest rows overlap; leave it out for one row"
+        )
     diameter, pitch = bearing.roller_diameter, bearing.pitch_diameter
     if bearing.outer_raceway_diameter <= bearing.inner_raceway_diameter:
         problems.append(

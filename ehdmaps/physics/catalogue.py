@@ -12,18 +12,25 @@ exceptions. From them:
 Full complement bearings NCF have as many rollers as go in. E and both ratings are those of SKF's general catalogue
 (edition in Russian): together they tell rollers of whole or half millimetres within 3 %. They carry as NJ do.
 
+Double row bearings NN 30 and NNU 49 have E or F, and both ratings, which tell rollers of whole or half millimetres:
+of all in the table the dynamic rating then is within 2 %. NNCF 50 have two rows of the rollers of NCF 30: SKF's E of
+both are alike, and C0 is twice as much within 3 %. How far the rows stand apart no catalogue says: three ribs of equal
+width are taken. Rollers of both rows stand side by side, where force over an angle of the cage changes most.
+
 An older design, or one for high speeds, may differ by more than the errors that are stated.
 
 References
 ----------
 ISO 15, Rolling bearings - Radial bearings - Boundary dimensions. ISO 76, Rolling bearings - Static load ratings.
 Raceways of series 2, 22, 3, 23: catalogues of Schaeffler and Koyo, which agree; of series 10: Schaeffler, some makers
-differ by 0.5 mm or so. Static ratings: SKF, Rolling bearings (general catalogue), suffix ECP.
+differ by 0.5 mm or so. Static ratings: SKF, Rolling bearings (general catalogue), suffix ECP. NN, NNU: NTN, Ball and
+Roller Bearings, 2202-E.
 """
 
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import NamedTuple
 
 from ehdmaps.errors import InputError
@@ -40,7 +47,7 @@ from ehdmaps.physics.designations.reader import (
     table,
 )
 from ehdmaps.physics.rollers.needle_catalogue import needle_boundary, needle_designations, needle_estimate
-from ehdmaps.physics.rollers.ratings import RATING
+from ehdmaps.physics.rollers.ratings import RATING, by_ratings
 
 FILLED = 0.8
 """Share of the pitch circle that rollers take: gives the published number for NU308, NU205, NU206, NU2205, N204."""
@@ -53,6 +60,11 @@ LENGTH_SHARE = {"10": 0.42, "2": 0.62, "22": 0.62, "3": 0.63, "23": 0.65}
 
 ERRORS = "raceways to about 3 %, roller diameter {} %, roller length {} %, number of rollers +-{}"
 """What an estimate is good for: measured on bearings whose inner geometry is known, and on the table, see the tests."""
+
+DOUBLE_ERRORS = (
+    "raceways to about 1 %, roller diameter {} %, roller length {} %, number of rollers +-2, row distance 15 %"
+)
+"""The same of bearings with two rows."""
 
 _MM = 1e-3
 
@@ -83,6 +95,36 @@ _FULL = {
 }
 _FULL_RATINGS = {key: float(row[5]) for key, row in _FULL_ROWS.items()}
 
+DOUBLE = {"30": "NN30", "49": "NNU49", "50": "NNCF50"}
+"""Series of bearings with two rows."""
+
+
+class _Double(NamedTuple):
+    """Bearing with two rows, and its static rating [N]."""
+
+    entry: Catalogue
+    rating: float
+
+
+@cache
+def _double(series: str, code: str) -> _Double | None:
+    """Bearing with two rows by the numbers of its designation; None where there is none."""
+    name = DOUBLE[series]
+    row = next((row for row in table("cylindrical")["double"][name] if bore_code(row[0]) == code), None)
+    if row is None:
+        return None
+    if name == "NNCF50":
+        single = _FULL["30", code]
+        return _Double(single._replace(series=name, width=row[1] * _MM), 2.0 * _FULL_RATINGS["30", code])
+    bore, outside, width, raceway = (length * _MM for length in row[:4])
+    way = -1.0 if name == "NN30" else 1.0  # from the raceway of the catalogue to the other one
+    diameter = 0.2 * (outside - bore)
+    for _ in range(5):
+        of_row = by_ratings(raceway + way * diameter, (row[4] / 2.0 ** (7.0 / 9.0), 0.5 * row[5]), FILLED)
+        diameter = 0.5 * _MM * round(of_row.diameter / (0.5 * _MM))
+    inner, outer = sorted((raceway, raceway + 2.0 * way * diameter))
+    return _Double(Catalogue(name, bore, outside, width, inner, outer), float(row[5]))
+
 
 def estimate(designation: str, basic_static_rating: float | None = None) -> BearingGeometry:
     """Inner geometry of a bearing by its designation.
@@ -91,8 +133,9 @@ def estimate(designation: str, basic_static_rating: float | None = None) -> Bear
     ----------
     designation : str
         N, NU, NJ or NUP of series 10, 2, 22, 3, 23 with bores of 20 to 100 mm, such as "NU206"; they differ in their
-        ribs alone. NCF of series 18, 22, 29, 30 with 20 to 260 mm. Blanks and the suffixes of today's design do not
-        matter: "NU 206 ECP". Or what `needle_estimate` takes.
+        ribs alone. NCF of series 18, 22, 29, 30 with 20 to 260 mm. Two rows: NN30 with 25 to 200 mm, NNU49 with 100
+        to 200 mm, NNCF50 as NCF30. Blanks and the suffixes of today's design do not matter: "NU 206 ECP". Or what
+        `needle_estimate` takes.
     basic_static_rating : float, optional
         C0 [N] of the bearing's catalogue; without it that of the table here, and where it has none, the roller length
         is a share of the width.
@@ -120,9 +163,13 @@ def estimate(designation: str, basic_static_rating: float | None = None) -> Bear
     clearance = delivered(designation, entry.bore)
     rating = tabulated_rating(designation) if basic_static_rating is None else basic_static_rating
     # makers' ratings of one bearing differ by up to a fifth, and so do their rollers
-    wide = 4 if entry.series.startswith(FULL) else 12
-    errors = ERRORS.format(wide, 20 if basic_static_rating is None else 6, 1)
-    return _geometry(name, entry, rating, errors, clearance, "SKF's " if basic_static_rating is None else "")
+    length, table_of = (20, "SKF's ") if basic_static_rating is None else (6, "")
+    if entry.series in DOUBLE.values():
+        errors = DOUBLE_ERRORS.format(4, length)
+        table_of = "NTN's " * bool(table_of) if FULL not in entry.series else table_of
+    else:
+        errors = ERRORS.format(4 if entry.series.startswith(FULL) else 12, length, 1)
+    return _geometry(name, entry, rating, errors, clearance, table_of)
 
 
 def designated(designation: str) -> BearingGeometry:
@@ -171,6 +218,9 @@ def tabulated_rating(designation: str) -> float | None:
     if found is None or found.kind != CYLINDRICAL:
         return None
     _, series, code = found.parts
+    if series in DOUBLE and found.parts[0] != FULL:
+        double = _double(series, code)
+        return None if double is None else double.rating
     rating: float | None = _FULL_RATINGS.get((series, code), _RATINGS.get(series + code))
     return rating
 
@@ -230,7 +280,7 @@ def static_rating(geometry: BearingGeometry) -> float:
     >>> round(static_rating(estimate("NU206", 39e3)), 6)
     39000.0
     """
-    rollers = geometry.rollers * geometry.roller_length * geometry.roller_diameter
+    rollers = geometry.rolling_elements * geometry.roller_length * geometry.roller_diameter
     return RATING * (1.0 - geometry.gamma) * rollers
 
 
@@ -256,8 +306,11 @@ def boundary(designation: str) -> Catalogue | None:
     if found is None or found.kind != CYLINDRICAL:
         needle = needle_boundary(designation)
         return None if needle is None else Catalogue("", *needle, math.nan, math.nan)
-    which, *key = found.parts
-    return (_FULL if which == "NCF" else _entries()).get((key[0], key[1]))
+    which, series, code = found.parts
+    if series in DOUBLE and which != FULL:
+        double = _double(series, code)
+        return None if double is None else double.entry
+    return (_FULL if which == FULL else _entries()).get((series, code))
 
 
 def _entries() -> dict[tuple[str, str], Catalogue]:
@@ -272,6 +325,11 @@ def _entries() -> dict[tuple[str, str], Catalogue]:
     return found
 
 
+def _doubles() -> tuple[str, ...]:
+    """Designations of bearings with two rows."""
+    return tuple(f"{name}{bore_code(row[0])}" for name, rows in table("cylindrical")["double"].items() for row in rows)
+
+
 def _looked_up(designation: str) -> Catalogue:
     """The entry of a designation."""
     entry = boundary(designation)
@@ -279,10 +337,15 @@ def _looked_up(designation: str) -> Catalogue:
         raise not_known(
             designation,
             "bearing",
-            (*designations(), *(f"{FULL}{series}{code}" for series, code in _FULL), *needle_designations()),
+            (
+                *designations(),
+                *(f"{FULL}{series}{code}" for series, code in _FULL),
+                *_doubles(),
+                *needle_designations(),
+            ),
             f"{', '.join(BEARINGS)}, and N, NU, NJ or NUP of series 10, 2, 22, 3, 23 with bores of 20 mm (25 mm in "
-            "series 10) to 100 mm, such as 'NU206'; NCF of series 18, 22, 29, 30; needles as 'NA4908', 'K40x48x20'; "
-            "give others by bore, outside_diameter, width and "
+            "series 10) to 100 mm, such as 'NU206'; NCF of series 18, 22, 29, 30; two rows NN30, NNU49, "
+            "NNCF50; needles as 'NA4908', 'K40x48x20'; give others by bore, outside_diameter, width and "
             "basic_static_rating",
             words_for_lines(designation),
         )
@@ -300,20 +363,21 @@ def _geometry(
     """Rollers between two raceways."""
     diameter = 0.5 * (entry.outer_raceway - entry.inner_raceway)
     pitch = 0.5 * (entry.outer_raceway + entry.inner_raceway)
-    full = entry.series.startswith(FULL)
+    full, rows = FULL in entry.series, 2 if entry.series in DOUBLE.values() else 1
     rollers = int(math.pi / math.asin(diameter / pitch)) if full else round(FILLED * math.pi * pitch / diameter)
     if rating is None:
         length = LENGTH_SHARE[entry.series] * entry.width
         basis = "width"
     else:
-        length = rating / (RATING * (1.0 - diameter / pitch) * rollers * diameter)
+        length = rating / rows / (RATING * (1.0 - diameter / pitch) * rollers * diameter)
         basis = f"{whose}static rating (ISO 76)" + ", full complement" * full
-    if not 0.25 * entry.width < length < 0.9 * entry.width:
+    if not 0.25 * entry.width < rows * length < 0.9 * entry.width:
         raise InputError(
-            f"bearing estimate: got basic_static_rating {rating!r} N, which takes rollers of {length / _MM:.4g} mm in "
-            f"a width of {entry.width / _MM:g} mm; allowed: 0.25 to 0.9 of the width; check its unit, C0 and not C"
+            f"bearing estimate: got basic_static_rating {rating!r} N, which takes rollers of {length / _MM:.4g} mm"
+            f"{' in each of two rows' * (rows > 1)} in a width of {entry.width / _MM:g} mm; "
+            "allowed: 0.25 to 0.9 of the width; check its unit, C0 and not C"
         )
     sentence = f"inner geometry estimated from catalogue dimensions and {basis}: {errors}"
-    return BearingGeometry(
-        name, entry.inner_raceway, entry.outer_raceway, diameter, length, rollers, 0.0, estimated=sentence
-    ).delivered(clearance)
+    apart = (entry.width + length) / 3.0 if rows > 1 else None
+    lengths = entry.inner_raceway, entry.outer_raceway, diameter, length
+    return BearingGeometry(name, *lengths, rollers, 0.0, estimated=sentence, row_distance=apart).delivered(clearance)

@@ -124,6 +124,18 @@ class Bearing:
         places = (np.arange(self.slices) + 0.5) / self.slices - 0.5
         return np.asarray(places * self.geometry.roller_length)
 
+    @cached_property
+    def roller_angles(self) -> FloatArray:
+        """Angles of the rollers in the cage, row by row, (Z,) [rad]: those of all rows stand side by side."""
+        geometry = self.geometry
+        return np.tile(2.0 * math.pi * np.arange(geometry.rollers) / geometry.rollers, geometry.row_count)
+
+    @cached_property
+    def row_places(self) -> FloatArray:
+        """Places of the rows of the rollers along x, (Z,) [m]."""
+        geometry = self.geometry
+        return np.repeat(np.array(geometry.row_places), geometry.rollers)
+
     @property
     def slice_length(self) -> float:
         """Length of a slice [m]."""

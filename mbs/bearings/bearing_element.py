@@ -402,11 +402,9 @@ class BearingElement(RingElement):
             return None
         from mbs.bearings.deviations import Turns, deviation_data  # with what few scenes state
 
-        geometry, each = self.bearing.geometry, np.arange(self.bearing.geometry.rollers)
+        geometry, places = self.bearing.geometry, self.bearing.roller_angles
         turns = Turns.of(geometry, self.inner_spin, self.outer_spin)
-        return deviation_data(
-            self.deviations, geometry, turns, self.start_angle, 2.0 * math.pi * each / each.size, each
-        )
+        return deviation_data(self.deviations, geometry, turns, self.start_angle, places, np.arange(places.size))
 
     @property
     def lubricant(self) -> Lubricant | None:

@@ -10,7 +10,6 @@ bearing by 1e-9 and 1e-7.
 from __future__ import annotations
 
 import functools
-import math
 from collections.abc import Callable
 from ctypes import POINTER, c_double, c_int64, c_size_t, c_void_p
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
@@ -142,9 +141,10 @@ class Cylinder(Record):
         ("sine", numbers),
         ("weight", numbers),
         ("added", numbers),
+        ("row", numbers),
     ]
     shapes: ClassVar = {
-        **dict.fromkeys(("cosine", "sine"), ("rollers",)),
+        **dict.fromkeys(("cosine", "sine", "row"), ("rollers",)),
         "weight": ("slices",),
         "added": ("rollers", 2, 2),
     }
@@ -236,10 +236,9 @@ def cylinder_of(
     if symmetric:
         # left and right to the bit
         x, depth = 0.5 * (x - x[::-1]), 0.5 * (depth + depth[::-1])
-    angles = 2.0 * math.pi * np.arange(geometry.rollers) / geometry.rollers
     positions, profile = x[which], depth[which]
     return Cylinder(
-        rollers=geometry.rollers,
+        rollers=geometry.rolling_elements,
         slices=positions.size,
         symmetric=int(symmetric and positions.size == x.size),
         half_clearance=0.5 * geometry.diametral_clearance,
@@ -251,9 +250,10 @@ def cylinder_of(
         most_profile=float(np.max(depth)),
         position=np.append(positions, 0.0),
         profile=np.append(profile, 0.0),
-        cosine=np.cos(angles),
-        sine=np.sin(angles),
+        cosine=np.cos(bearing.roller_angles),
+        sine=np.sin(bearing.roller_angles),
         weight=weights,
+        row=bearing.row_places,
     )
 
 
@@ -330,7 +330,7 @@ class Arrays(LawRoom):
 
     def __init__(self, bearing: Bearing, coupling: FloatArray | None = None) -> None:
         super().__init__()
-        rollers, slices = bearing.geometry.rollers, bearing.slices
+        rollers, slices = bearing.geometry.rolling_elements, bearing.slices
         self.shape = cylinder_of(bearing)
         self.state, self.answer = np.zeros(13), np.zeros((13, 6))
         self._states = np.zeros((rollers, 2, slices, 2))

@@ -60,7 +60,9 @@ class RollerLoads:
         Total approach of both contacts of the slices [m]; below zero a gap, or a film. Of coupled slices the part that
         belongs to their own load.
     position : array (n,)
-        Middles of the slices [m].
+        Middles of the slices along the roller [m].
+    row : array (Z,)
+        Places of the rows of the rollers along x [m].
     """
 
     angle: FloatArray
@@ -70,6 +72,7 @@ class RollerLoads:
     damping: FloatArray
     approach: FloatArray
     position: FloatArray
+    row: FloatArray
 
     @property
     def loaded(self) -> int:
@@ -90,8 +93,8 @@ class RollerLoads:
         from mbs.life import roller_reference_life
 
         slices = self.load_per_length * geometry.roller_length / self.position.size
-        rating = cylindrical_ratings(geometry)[0]
-        return roller_reference_life(np.stack([slices, slices]), rating, geometry.gamma, 0.0, inner_turns=inner_turns)
+        rating, both, rows = cylindrical_ratings(geometry)[0], np.stack([slices, slices]), geometry.row_count
+        return roller_reference_life(both, rating, geometry.gamma, 0.0, inner_turns=inner_turns, rows=rows)
 
 
 def roller_loads(
@@ -116,7 +119,6 @@ def roller_loads(
     own : array (Z, n), optional
         Approaches that the law takes, of slices that are coupled [m]; their loads are those at rest.
     """
-    count = bearing.geometry.rollers
     x, profile = bearing.slice_positions, 2.0 * bearing.profile_depths
     gap, tilt, gap_rate, tilt_rate = (part[:, None] for part in rollers)
     approach = gap + x * tilt - profile
@@ -125,7 +127,7 @@ def roller_loads(
         load, _, _ = unilateral_forces(states[0], states[1], states[2], states[3], rate)
     else:
         load, approach = states[0].copy(), own.copy()
-    angle = cage_angle + 2.0 * math.pi * np.arange(count) / count
+    angle = cage_angle + bearing.roller_angles
     return RollerLoads(
         angle=np.arctan2(np.sin(angle), np.cos(angle)),
         load=load.sum(axis=1) * bearing.slice_length,
@@ -134,6 +136,7 @@ def roller_loads(
         damping=states[2].copy(),
         approach=approach,
         position=x.copy(),
+        row=bearing.row_places,
     )
 
 

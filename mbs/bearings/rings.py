@@ -45,7 +45,8 @@ _NO_DEPTH, _ROUND_OFF = 1e-30, 1e-12
 
 
 _WHOLE = ("firsts", "places", "films_of", "rollers", "slices", "felt", "alone")
-_REAL = ("start_angles", "cage_rates", "sizes", "positions", "profiles", "weights", "cosine", "sine", "outward")
+_OF_ROLLERS = ("cosine", "sine", "row_places")
+_REAL = ("start_angles", "cage_rates", "sizes", "positions", "profiles", "weights", *_OF_ROLLERS, "outward")
 
 
 class Rings(Record):
@@ -73,6 +74,8 @@ class Rings(Record):
         Places of the slices along the roller, and twice the profile there [m]; the last one is no slice.
     cosine, sine : array (bearings, Z)
         Directions of the rollers in the cage.
+    row_places : array (bearings, Z)
+        Places of their rows along x [m].
     felt : array (bearings,), of int
         How many displacements of rings each feels: 4, 2 of rings that do not tilt, 6 with rollers as bodies.
     weights : array (bearings, n)
@@ -97,7 +100,7 @@ class Rings(Record):
         "films_of": ("count", "sides"),
         "sizes": ("count", len(_SIZES)),
         **dict.fromkeys(("positions", "profiles", "weights"), ("count", "most_slices")),
-        **dict.fromkeys(("cosine", "sine"), ("count", "most_rollers")),
+        **dict.fromkeys(_OF_ROLLERS, ("count", "most_rollers")),
     }
 
     @property
@@ -212,7 +215,7 @@ def gather_rings(members: Sequence[Member], films_of: IntArray) -> Rings:
         _padded([np.append(one.given(name)[fold.firsts], 0.0) for one, fold in zip(shapes, folds, strict=True)])
         for name in ("position", "profile")
     )
-    cosine, sine = (_padded([shape.given(name) for shape in shapes]) for name in ("cosine", "sine"))
+    cosine, sine, row = (_padded([shape.given(name) for shape in shapes]) for name in ("cosine", "sine", "row"))
     count, sides = films_of.shape
     kept, deviations = gathered([element.deviation_data for element in plains])
     rings = checked(Rings, "ehd_rings")(
@@ -232,6 +235,7 @@ def gather_rings(members: Sequence[Member], films_of: IntArray) -> Rings:
         profiles=profiles,
         cosine=cosine,
         sine=sine,
+        row_places=row,
         felt=_whole(feels(member.element).shape[0] for member in members),
         weights=_padded([np.append(fold.weights, 0.0) for fold in folds]),
         alone=_whole(member.alone for member in members),

@@ -70,14 +70,14 @@ class RollerContacts:
         self.laws = (inner, outer)
         self.flat_laws = (FlatLaw(inner), FlatLaw(outer))
         self._points: dict[int, LawAtPoint] = {}
-        self._x = bearing.slice_positions
+        self._x = bearing.row_places[:, None] + bearing.slice_positions
         self.added: FloatArray | None = None
         self._depths = bearing.profile_depths + 0.25 * bearing.geometry.diametral_clearance
 
     @property
     def size(self) -> int:
         """Length of the vector of displacements."""
-        return 12 + self.bearing.geometry.rollers
+        return 12 + self.bearing.geometry.rolling_elements
 
     def __call__(
         self,
@@ -130,7 +130,7 @@ class RollerContacts:
             rate = self._rate(side, (flat, tilted), v)
             load, k, c, beyond = self._evaluate(side, delta, rate, entrainment_speed, temperature)
             outside |= beyond
-            f -= flat.T @ load.sum(axis=1) + tilted.T @ (load @ self._x)
+            f -= flat.T @ load.sum(axis=1) + tilted.T @ (load * self._x).sum(axis=1)
             K += self._matrix(flat, tilted, k)
             C += self._matrix(flat, tilted, c)
         return Forces(f, K, C, outside)
@@ -214,7 +214,7 @@ class RollerContacts:
             begin = memory.settled(delta) if states is None else states[side]
             load, tangent, end = memory.advance(begin, delta, AT_REST if states is None else dt)
             films.append(begin if states is None else end)
-            f -= length * (flat.T @ load.sum(axis=1) + tilted.T @ (load @ self._x))
+            f -= length * (flat.T @ load.sum(axis=1) + tilted.T @ (load * self._x).sum(axis=1))
             K += self._matrix(flat, tilted, tangent * length)
         return Forces(f, K, C), (films[0], films[1])
 
@@ -317,8 +317,8 @@ class RollerContacts:
 
     def _rows(self, side: int, cage_angle: float) -> tuple[FloatArray, FloatArray]:
         """Approach (Z, m) of the contacts by the displacements, and how it grows along the roller."""
-        count = self.bearing.geometry.rollers
-        angle = cage_angle + 2.0 * math.pi * np.arange(count) / count
+        angle = cage_angle + self.bearing.roller_angles
+        count = angle.size
         c, s = np.cos(angle), np.sin(angle)
         flat, tilted = np.zeros((count, self.size)), np.zeros((count, self.size))
         sign, ring = (1.0, 0) if side == 0 else (-1.0, 6)
@@ -339,7 +339,7 @@ class RollerContacts:
 
     def _matrix(self, flat: FloatArray, tilted: FloatArray, values: FloatArray) -> FloatArray:
         """Sum of values B B^T over the slices."""
-        first, second, third = values.sum(axis=1), values @ self._x, values @ self._x**2
+        first, second, third = (np.sum(values * self._x**power, axis=1) for power in range(3))
         mixed = (flat * second[:, None]).T @ tilted
         flats, tilts = (flat * first[:, None]).T @ flat, (tilted * third[:, None]).T @ tilted
         return np.asarray(flats + mixed + mixed.T + tilts)
@@ -350,8 +350,8 @@ class RollerContacts:
         """Loads and derivatives of the slices of one side [N], [N/m], [N s/m], and whether any lies outside the map."""
         law = self.laws[side]
         if isinstance(law, DryLaw):
-            w, k, c = law.evaluate(delta, rate)
-            return w / self._x.size, k / self._x.size, c / self._x.size, self._above(law, delta)
+            w, k, c = (part / self.bearing.slices for part in law.evaluate(delta, rate))
+            return w, k, c, self._above(law, delta)
         length = self.bearing.slice_length
         w, k, c, outside = self._point(side, law, speed, temperature).evaluate(delta, rate)
         return w * length, k * length, c * length, outside

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 def roller_body(name: str, bearing: Bearing) -> Body:
     """The rollers of a bearing as one body, with a radial coordinate [m] for each."""
-    count = bearing.geometry.rollers
+    count = bearing.geometry.rolling_elements
     zero = np.zeros((count, count))
     return Body(
         name=name,

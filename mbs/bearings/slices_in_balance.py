@@ -42,8 +42,8 @@ class Side(NamedTuple):
         Approach of the middle of each roller, and how it grows along it, by the ports of the bearing.
     approach : array (Z, n)
         Approaches at rest [m].
-    positions : array (n,)
-        Places of the slices along a roller [m].
+    positions : array (n,) or (Z, n)
+        Places of the slices where rollers grow by [m].
     length : float
         Length of a slice [m].
     """
@@ -125,6 +125,7 @@ def massless_side(law: LawAtPoint, rollers: RollerLoads, length: float) -> Side:
     c, s = np.cos(rollers.angle), np.sin(rollers.angle)
     pose = np.zeros((rollers.angle.size, 2, 6))
     pose[:, 0, 1], pose[:, 0, 2], pose[:, 1, 4], pose[:, 1, 5] = c, s, -s, c
+    pose[:, 0] += rollers.row[:, None] * pose[:, 1]
     return Side(law, pose, rollers.approach, rollers.position, length)
 
 

@@ -137,7 +137,7 @@ def machine(found: Examination) -> Markup:
         (
             entry.name,
             entry.geometry.title,
-            f"{entry.geometry.rollers}",
+            f"{entry.geometry.rolling_elements}",
             number(LENGTH.value(entry.geometry.roller_diameter), 5),
             number(LENGTH.value(entry.geometry.roller_length), 5),
             f"{entry.inner} in {entry.outer}",

@@ -321,6 +321,6 @@ def elements_of(entry: BearingSpec | LocatingSpec) -> int:
 
 
 def clearance_of(entry: BearingSpec | LocatingSpec) -> float | None:
-    """Diametral clearance of a bearing [m]; None for tapered rollers, whose play is set along the axis."""
+    """Diametral clearance of a bearing [m]; None for tapered rollers, whose play is set along the axis, and washers."""
     found: float | None = entry.geometry.clearance
-    return found
+    return found if entry.geometry.has_clearance else None

@@ -70,7 +70,7 @@ FULL = '["x", "y", "z", "theta_y", "theta_z"]'
 
 SLICES = "slices = 5"
 NU = f'bearing = "NU308"\n{SLICES}\ndiametral_clearance = "10 um"'
-NEEDLE = NU.replace("NU308", "NA4908")
+NEEDLE, NN, NNU = (NU.replace("NU308", name) for name in ("NA4908", "NN3014", "NNU4920"))
 FEW = """
 geometry = { inner_raceway_diameter = "52 mm", outer_raceway_diameter = "80 mm", roller_diameter = "14 mm", \
 roller_length = "14 mm", rollers = 7, diametral_clearance = "5 um" }
@@ -79,7 +79,7 @@ slices = 3
 """
 NUP, NJ = (NU.replace("NU308", name) for name in ("NUP308", "NJ308"))
 BALL, ANGULAR, TAPERED = (f'bearing = "{name}"' for name in ("6208", "7208B", "32208"))
-ROWS, FOUR_POINT, SPHERE = (f'bearing = "{name}"' for name in ("3208", "QJ208", "1208"))
+ROWS, FOUR_POINT, SPHERE, THRUST = (f'bearing = "{name}"' for name in ("3208", "QJ208", "1208", "51208"))
 TABLE = """
 kind = "table"
 speeds = ["0 rpm", "3000 rpm"]
@@ -140,12 +140,14 @@ KINDS = (
     Machine("cylindrical", alike(NU), axial=False),
     Machine("rollers as bodies", alike(FEW), axial=False),
     Machine("needle", (("left", NEEDLE), ("right", NEEDLE.replace("NA4908", "HK4020"))), axial=False),
+    Machine("double row cylindrical", (("left", NN), ("right", NNU)), axial=False),
     Machine("deep groove", alike(BALL)),
     Machine("hybrid, thin section", (("left", 'bearing = "6208 HC"'), ("right", 'bearing = "61912"'))),
     Machine(
         "two rows, four-point", (("left", 'bearing = "3208"'), ("right", 'bearing = "QJ208"')), heavy=(1.0, -0.3, 0.0)
     ),
     Machine("self-aligning", alike(SPHERE)),
+    Machine("thrust", (*preloaded(THRUST), ("left", NU), ("right", NU)), heavy=(1.0, -0.3, 0.0)),
     Machine("angular contact", preloaded(ANGULAR), heavy=(1.0, -0.3, 0.0)),
     Machine("tapered", preloaded(TAPERED), heavy=(0.25, -1.0, 0.0)),
     Machine("ribbed NUP", alike(NUP)),

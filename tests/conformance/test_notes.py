@@ -11,7 +11,7 @@ import pytest
 
 from mbs import assemble, parse_scene, statics
 from tests.cases.commands import run
-from tests.conformance.machines import BACK, KINDS, NEEDLE, NJ, NU, NUP, PUSHED, TAPERED, Machine
+from tests.conformance.machines import BACK, KINDS, NEEDLE, NJ, NN, NU, NUP, PUSHED, TAPERED, Machine
 
 DRY = "hertz:1.25e-5 s"
 
@@ -33,10 +33,12 @@ IDLE = {
     "cylindrical": NU.replace("10 um", "200 um"),
     "rollers as bodies": NU.replace("10 um", "200 um") + '\nrollers = "bodies"',
     "needle": NEEDLE.replace("10 um", "200 um"),
+    "double row cylindrical": NN.replace("10 um", "200 um"),
     "deep groove": 'bearing = "6208"\ndiametral_clearance = "200 um"',
     "hybrid, thin section": 'bearing = "61912"\ndiametral_clearance = "200 um"',
     "two rows, four-point": 'bearing = "QJ208"\ndiametral_clearance = "200 um"',
     "self-aligning": 'bearing = "1208"\ndiametral_clearance = "200 um"',
+    "thrust": 'bearing = "51208"\naxial_offset = "-250 um"',
     "angular contact": 'bearing = "7208B"\naxial_offset = "-250 um"',
     "tapered": 'bearing = "32208"\naxial_offset = "-100 um"',
     "ribbed NUP": NUP.replace("10 um", "200 um") + '\naxial_clearance = "400 um"',

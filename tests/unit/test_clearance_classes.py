@@ -186,9 +186,10 @@ def test_check_reads_it(capsys):
 FAMILIES = {
     "spherical roller bearing": ("22208", "22308 E/C3", "23022"),
     "self-aligning ball bearing of another series": ("11208", "126"),
-    "thrust ball bearing": ("51108", "53208"),
+    "thrust ball bearing with a spherical washer": ("53208", "54208"),
+    "thrust ball bearing of two directions": ("52208",),
     "four-point contact ball bearing": ("QJF208",),
-    "double row cylindrical roller bearing": ("NN3010", "NNU4920"),
+    "double row cylindrical roller bearing": ("NN3910", "NNU4120"),
     "full complement cylindrical roller bearing": ("NCF2808", "NJG2318", "SL045010"),
     "double row angular contact ball bearing of another series": ("3008", "3808"),
     "drawn cup needle roller bearing": ("BK1616", "HN2020"),

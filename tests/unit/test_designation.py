@@ -57,7 +57,7 @@ def test_one_row_serves_four_types():
     ("text", "words"),
     [
         ("NU210M", "got"),
-        ("NN3010", "got 'NN3010', double row cylindrical roller bearing: not yet"),
+        ("NN3910", "got 'NN3910', double row cylindrical roller bearing: not yet"),
         ("6210", "6210 is a ball bearing: its contacts are points"),
     ],
 )

@@ -48,7 +48,7 @@ def sweep_result(frequency: float) -> xr.Dataset:
 def test_bars_are_as_long_as_the_loads():
     angle, load = np.radians([0.0, 90.0, 180.0, -90.0]), np.array([50.0, 100.0, 0.0, 25.0])
     empty = np.zeros((4, 1))
-    rollers = RollerLoads(angle, load, np.zeros(4), empty, empty, empty, np.zeros(1))
+    rollers = RollerLoads(angle, load, np.zeros(4), empty, empty, empty, np.zeros(1), np.zeros(4))
     report = Report(str(roller_drawing(rollers, np.array([0.0, 1.0]), "a", "Loads")))
     bars = [str(a["d"]) for a in report.named("path") if a.get("class") == "load"]
     ends = np.array([re.findall(r"[-0-9.]+", bar) for bar in bars], dtype=float)

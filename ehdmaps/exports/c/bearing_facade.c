@@ -54,6 +54,7 @@ static ehd_cylinder shape_of(const ehd_bearing *bearing) {
         .most_travel = EHD_ROLLER_DIAMETER, .most_tilt = 0.5, .half_length = 0.5 * EHD_ROLLER_LENGTH,
         .least_profile = bearing->least_profile, .most_profile = bearing->most_profile,
         .position = bearing->position, .profile = bearing->profile, .cosine = COSINES, .sine = SINES,
+        .row = ROW_PLACES,
     };
     return shape;
 }

@@ -293,7 +293,7 @@ def _public_numbers(law: ContactLaw, bearing: BearingGeometry | None, options: K
         clearance = bearing.diametral_clearance if options.clearance is None else options.clearance
         lines += [
             "\n",
-            define("EHD_ROLLERS", bearing.rollers, "number of rollers"),
+            define("EHD_ROLLERS", bearing.rolling_elements, f"number of rollers{bearing.row_words}"),
             define("EHD_ROLLER_LENGTH", bearing.roller_length, "[m]"),
             define("EHD_ROLLER_DIAMETER", bearing.roller_diameter, "[m]"),
             define("EHD_ISO_PROFILE", int(options.profile == "iso"), "1: profile of ISO/TS 16281, 0: straight"),
@@ -360,13 +360,15 @@ def _film_data(law: ContactLaw) -> str:
 
 
 def _bearing_data(bearing: BearingGeometry) -> str:
-    """Directions of the rollers."""
-    angles = 2.0 * math.pi * np.arange(bearing.rollers) / bearing.rollers
+    """Directions of the rollers, and places of their rows."""
+    angles = np.tile(2.0 * math.pi * np.arange(bearing.rollers) / bearing.rollers, bearing.row_count)
     return "\n".join(
         (
             "/* Directions of the rollers in the cage. */",
             array("COSINES", np.cos(angles)),
             array("SINES", np.sin(angles)),
+            "/* Places of their rows along x [m]. */",
+            array("ROW_PLACES", np.repeat(np.array(bearing.row_places), bearing.rollers)),
         )
     )
 

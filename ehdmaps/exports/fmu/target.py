@@ -67,7 +67,7 @@ def write(emap: EHDMap, path: Path, output: Path | None, arguments: argparse.Nam
     cold, hot = (float(emap.dataset["temperature"].values[end]) for end in (0, -1))
     clearance = emap.bearing.diametral_clearance if options.clearance is None else options.clearance
     start = {"temperature": min(max(_USUAL_TEMPERATURE, cold), hot), "clearance": clearance}
-    films = film_names(emap.bearing.rollers, options.slices) if arguments.films == "memory" else ()
+    films = film_names(emap.bearing.rolling_elements, options.slices) if arguments.films == "memory" else ()
     content = Content(
         words=str(emap.dataset.attrs.get("title", "EHD map of a bearing")),
         checksum=str(emap.dataset.attrs.get(schema.CHECKSUM, "")),

@@ -229,7 +229,7 @@ def _bearing_rows(bearing: BearingGeometry) -> Iterator[tuple[str, str]]:
     inner, outer = LENGTH.text(bearing.inner_raceway_diameter, 5), LENGTH.text(bearing.outer_raceway_diameter, 5)
     yield "raceway diameters", f"{inner} inner, {outer} outer"
     size = f"{LENGTH.text(bearing.roller_diameter, 5)} diameter, {LENGTH.text(bearing.roller_length, 5)} long"
-    yield "rollers", f"{bearing.rollers}, {size}"
+    yield "rollers", f"{bearing.rolling_elements}{bearing.row_words}, {size}"
     words = f" ({bearing.clearance_range.words})" if bearing.clearance_range else ""
     yield "diametral clearance", FILM.text(bearing.diametral_clearance) + words
 

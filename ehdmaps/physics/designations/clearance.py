@@ -34,6 +34,7 @@ from ehdmaps.physics.designations.reader import (
     NEEDLE,
     SELF_ALIGNING,
     TAPERED,
+    THRUST,
     Designation,
     read_designation,
     table,
@@ -69,6 +70,7 @@ _OWN = {**_AXIAL, SELF_ALIGNING: ("self_aligning", 10e-6)}
 _MOUNTED = {
     ANGULAR: "the play of angular contact bearings is set when they are mounted",
     TAPERED: "the play of tapered bearings is set when they are mounted",
+    THRUST: "washers of thrust ball bearings have none",
 }
 _NO_RING = "without an inner ring, shaft and needles make the clearance"
 
@@ -170,9 +172,24 @@ class Named:
         return self.rollers
 
     @property
+    def row_elements(self) -> int:
+        """Number of the rolling elements of a row."""
+        return self.rollers
+
+    @property
     def title(self) -> str:
         """Name of the bearing in titles: its label, else its name; `estimated` is for a line of its own."""
         return self.label or self.name
+
+    @property
+    def thrust(self) -> bool:
+        """Tell whether its contacts carry along the axis alone."""
+        return False
+
+    @property
+    def has_clearance(self) -> bool:
+        """Tell whether it has one."""
+        return bool(self.clearance_field)
 
     @property
     def clearance(self) -> float | None:

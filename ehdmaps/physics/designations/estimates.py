@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
 
-_PERCENT = re.compile(r"(roller diameter|roller length|ball diameter|pitch diameter) (?:to )?(\d+) %")
+_PERCENT = re.compile(r"(roller diameter|roller length|row distance|ball diameter|pitch diameter) (?:to )?(\d+) %")
 _RACEWAYS = re.compile(r"raceways to about (\d+) %")
 _ANGLE = re.compile(r"contact angle to ([\d.]+) deg")
 _GROOVES = re.compile(r"(inner |outer |)groove radi(?:i|us) ([\d.]+) to ([\d.]+)")

@@ -10,8 +10,9 @@ from ehdmaps.physics.designations.reader import BALLS, ROLLERS, TAPERED, plain_n
 
 SERVED = (
     "deep groove balls 618, 619, 160, 60, 62, 63, 64; angular contact balls 718, 719, 70, 72, 73, two rows 32, 33, "
-    "four-point QJ, self-aligning 12, 13, 22, 23; cylindrical rollers N, NU, NJ, NUP of 10, 2, 22, 3, 23, NCF of 18, "
-    "22, 29, 30; needles K, NA49, HK; tapered rollers 302, 303, 313, 320, 322, 323"
+    "four-point QJ, self-aligning 12, 13, 22, 23, thrust balls 511 to 514; cylindrical rollers N, NU, NJ, NUP of 10, "
+    "2, 22, 3, 23, NCF of 18, 22, 29, 30, two rows NN30, NNU49, NNCF50; needles K, NA49, HK; tapered rollers 302, 303, "
+    "313, 320, 322, 323"
 )
 """Kinds and series that are served, in words."""
 
@@ -25,7 +26,8 @@ _FAMILIES = tuple(
         (r"(?:292|293|294)[ -]?\d\d", "spherical roller thrust bearing"),
         (r"C[ -]?(?:22|23|30|31|32|39|40|41|49|50|59|60|69)[ -]?\d\d", "toroidal roller bearing"),
         (r"(?:112|113)[ -]?\d\d|1(?:08|26|27|29|35)", "self-aligning ball bearing of another series"),
-        (r"(?:511|512|513|514|522|523|524|532|533|534)[ -]?\d\d", "thrust ball bearing"),
+        (r"(?:532|533|534|542|543|544)[ -]?\d\d", "thrust ball bearing with a spherical washer"),
+        (r"(?:522|523|524)[ -]?\d\d", "thrust ball bearing of two directions"),
         (r"(?:811|812|893|894|874)[ -]?\d\d", "cylindrical roller thrust bearing"),
         (r"(?:AXK|AXW|AS|LS|AXZ) ?\d{4,}", "needle roller thrust bearing"),
         (r"(?:2344|2347|7602|7603|BSA|BSB|BSD|ZKLN|ZKLF|BTW|BTM)[ -]?\d*", "angular contact thrust ball bearing"),

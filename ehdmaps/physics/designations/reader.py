@@ -26,21 +26,27 @@ CYLINDRICAL, NEEDLE, NEEDLE_CAGE, DEEP_GROOVE, ANGULAR, TAPERED, DOUBLE_ROW, FOU
     "self-aligning ball bearing",
     "drawn cup needle roller bearing",
 )
-OF_ROWS = (DOUBLE_ROW, FOUR_POINT, SELF_ALIGNING)
+THRUST = "thrust ball bearing"
+OF_ROWS = (DOUBLE_ROW, FOUR_POINT, SELF_ALIGNING, THRUST)
 NEEDLES = (NEEDLE, NEEDLE_CAGE, DRAWN_CUP)
 BALLS, ROLLERS = (DEEP_GROOVE, ANGULAR, *OF_ROWS), (CYLINDRICAL, *NEEDLES)
 
 
 class _Kind(NamedTuple):
-    """Designations of a kind without prefixes and suffixes."""
+    """Designations of a kind without prefixes and suffixes, and where their suffixes stand, if not with the kind."""
 
     kind: str
     base: str
+    suffixes: str = ""
 
 
+_TWO_ROWS = "double row cylindrical roller bearing"
 _KINDS = (
     _Kind(CYLINDRICAL, r"(NUP|NU|NJ|N)[ -]*(10|22|23|2|3)[ -]?(\d\d)"),
     _Kind(CYLINDRICAL, r"(NCF)[ -]*(18|22|29|30)[ -]?(\d\d)(?:[ -]?C?V)?"),
+    _Kind(CYLINDRICAL, r"(NN)[ -]*(30)[ -]?(\d\d)", _TWO_ROWS),
+    _Kind(CYLINDRICAL, r"(NNU)[ -]*(49)[ -]?(\d\d)(?:[ -]?B)?", _TWO_ROWS),
+    _Kind(CYLINDRICAL, r"(NNCF)[ -]*(50)[ -]?(\d\d)(?:[ -]?C?V)?"),
     _Kind(NEEDLE, r"(R?NAV?)[ -]?(49)[ -]?(\d\d)"),
     _Kind(DRAWN_CUP, r"(HK)[ -]?(\d\d)[ -]?(\d\d)(?:[CF]|TN|TV)?"),
     _Kind(NEEDLE_CAGE, r"(K) ?(\d+[X*]\d+[X*]\d+)"),
@@ -49,9 +55,10 @@ _KINDS = (
     _Kind(DOUBLE_ROW, r"(32|33|52|53)[ -]?(\d\d)[ -]?(A|B)?"),
     _Kind(FOUR_POINT, r"(QJ)[ -]?(10|2|3)[ -]?(\d\d)"),
     _Kind(SELF_ALIGNING, r"(12|13|22|23)[ -]?(\d\d)"),
+    _Kind(THRUST, r"(511|512|513|514)[ -]?(\d\d)"),
     _Kind(TAPERED, r"(302|303|313|320|322|323)[ -]?(\d\d)(?:[ -]?X)?"),
 )
-_PATTERNS = tuple((row.kind, re.compile(rf"(.*?){row.base}(?![0-9])(.*)")) for row in _KINDS)
+_PATTERNS = tuple((row, re.compile(rf"(.*?){row.base}(?![0-9])(.*)")) for row in _KINDS)
 _CLASS = re.compile(r"C([2-5NM])|P[2-6]([2-5])")
 _ISO_NAMES = {"68": "618", "69": "619", "78": "718", "79": "719", "52": "32", "53": "33"}
 """Series of makers, and their names by ISO."""
@@ -137,12 +144,12 @@ def read_designation(text: str) -> Designation | None:
     upper = text.strip().upper()
     if len(upper) > _LONGEST:
         return None
-    for kind, pattern in _PATTERNS:
-        match = pattern.fullmatch(upper)
+    for row, pattern in _PATTERNS:
+        kind, match = row.kind, pattern.fullmatch(upper)
         if match is None:
             continue
         before, *parts, behind = match.groups()
-        first, last = prefix(before, kind) if before else None, suffixes(behind, kind)
+        first, last = prefix(before, kind) if before else None, suffixes(behind, row.suffixes or kind)
         if last is None or (before and first is None):
             continue
         if kind == ANGULAR:
@@ -153,7 +160,9 @@ def read_designation(text: str) -> Designation | None:
             parts[0] = _ISO_NAMES.get(parts[0], parts[0])
         affixes = (*([first] if first else []), *last)
         named = [one.text for one in affixes if one.effect == CLEARANCE]
-        classes = dict.fromkeys("C" + "".join(found.groups("")) for one in named if (found := _CLASS.match(one)))
+        classes = dict.fromkeys(
+            "C" + "".join(found.groups("")) if (found := _CLASS.fullmatch(one)) else one for one in named
+        )
         return Designation(kind, tuple(parts), " ".join(classes), affixes)
     return None
 

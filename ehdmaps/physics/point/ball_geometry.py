@@ -32,8 +32,8 @@ HYPOTHESES = OUTER, INNER, BISECTOR, NO_MOMENT = "outer race control", "inner ra
 way between the contact angles, or does that without a gyroscopic moment. See `mbs.bearings.balls.ball_speed`."""
 
 MOST_BALLS = 500
-LARGEST_ANGLE = math.radians(60.0)
-"""Largest nominal contact angle [rad]."""
+LARGEST_ANGLE = math.radians(90.0)
+"""Largest nominal contact angle, that of thrust bearings [rad]."""
 
 _CONFORMITIES = (0.5, 1.0)
 _SPHERE, _OFF_MIDDLE = 20.0, 0.25
@@ -77,7 +77,7 @@ class BallGeometry(Named):
         Radius of each groove over the ball diameter, f, 0.5 < f <= 1; of an outer raceway that is a sphere above 1.
     contact_angle : float
         Nominal contact angle alpha [rad], 0 for deep groove bearings. Positive: an axial force on the inner ring in +x
-        is carried; negative: one in -x. At most 60 degrees either way.
+        is carried; negative: one in -x. At most 90 degrees either way: a thrust bearing.
     clearance : float
         Diametral clearance s [m], < 0 for preload. Of angular contact bearings it is what fits and temperature add to
         the nominal geometry; of rows that carry either way it is axial, see `axial_play`.
@@ -143,6 +143,21 @@ class BallGeometry(Named):
     def rolling_elements(self) -> int:
         """Number of its balls, of all rows."""
         return self.balls * len(self.rows)
+
+    @property
+    def thrust(self) -> bool:
+        """Tell whether its grooves face each other along the axis: a thrust bearing, without a radial clearance."""
+        return abs(self.contact_angle) == LARGEST_ANGLE
+
+    @property
+    def has_clearance(self) -> bool:
+        """Tell whether it has a clearance: washers have none."""
+        return not self.thrust
+
+    @property
+    def row_elements(self) -> int:
+        """Number of the balls of a row."""
+        return self.balls
 
     def known(self, values: Mapping[str, Any], estimated: str) -> BallGeometry:
         """The same bearing with parts that are known.
@@ -213,7 +228,9 @@ class BallGeometry(Named):
 
     @property
     def radial_distance(self) -> float:
-        """Radial distance of the groove centres of centred rings, A cos(alpha) - s/2 [m]."""
+        """Radial distance of the groove centres of centred rings, A cos(alpha) - s/2 [m]; 0 of thrust bearings."""
+        if self.thrust:
+            return 0.0
         play = 0.0 if self.axial_play else self.clearance
         return self.groove_distance * math.cos(self.contact_angle) - 0.5 * (play - self.tightening)
 
@@ -329,7 +346,7 @@ def _problems(geometry: BallGeometry) -> list[str]:
         ("pitch_diameter", "m", 0.0, math.inf, "> 0"),
         ("inner_conformity", "", *_CONFORMITIES, "above 0.5 and at most 1; it is radius over ball diameter"),
         ("outer_conformity", "", 0.5, _SPHERE, "above 0.5 and at most 1; it is radius over ball diameter"),
-        ("contact_angle", "rad", -math.inf, LARGEST_ANGLE, "from -60 to 60 deg"),
+        ("contact_angle", "rad", -math.inf, LARGEST_ANGLE, "from -90 to 90 deg"),
         ("clearance", "m", -math.inf, math.inf, ""),
     )
     for name, unit, above, most, allowed in numbers:
@@ -355,7 +372,12 @@ def _problems(geometry: BallGeometry) -> list[str]:
             f"{where}, outer_conformity: got {geometry.outer_conformity:.4g}; allowed: above 0.5 and at most 1; it is "
             f"radius over ball diameter; or that of a sphere about the middle of the bearing, {middle:.4g}"
         )
-    if not abs(geometry.clearance) < geometry.groove_distance * math.cos(geometry.contact_angle):
+    if geometry.thrust and (geometry.clearance or geometry.tightening):
+        problems.append(
+            f"{where}, clearance: got {1e6 * (geometry.clearance or geometry.tightening):.4g} um; allowed: 0, as "
+            "washers of thrust bearings have none, and none is taken by fits or warmth"
+        )
+    elif not abs(geometry.clearance) < geometry.groove_distance * math.cos(geometry.contact_angle):
         problems.append(
             f"{where}, clearance: got {1e6 * geometry.clearance:.4g} um; allowed: less than the distance of the groove "
             f"centres, {1e6 * geometry.groove_distance * math.cos(geometry.contact_angle):.4g} um, either way; check "

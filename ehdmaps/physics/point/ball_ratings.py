@@ -1,5 +1,8 @@
 """Ratings of ball bearings by their inner geometry, and balls by a static rating.
 
+Those of thrust bearings are axial: C0 = 61.6 Z Dw^2 of ISO 76 at 90 degrees, and C = 1.3 f_c Z^(2/3) Dw^1.8 with f_c
+of table 4 of ISO 281, which goes with (Dw/d_m)^0.3 in all its digits.
+
 References
 ----------
 ISO 76: static ratings, factors f0 (table 1). ISO 281: dynamic ratings.
@@ -42,7 +45,10 @@ def static_factor(gamma: float) -> float:
 
 
 def ball_static_rating(geometry: BallGeometry) -> float:
-    """Static rating C0 of ISO 76 [N]; of balls of silicon nitride `HYBRID_RATING` of it."""
+    """Static rating C0 of ISO 76 [N], axial of thrust bearings; of balls of silicon nitride `HYBRID_RATING` of it."""
+    if geometry.thrust:
+        steel = THRUST_FACTOR * geometry.balls * (geometry.ball_diameter / _MM) ** 2
+        return HYBRID_RATING * steel if geometry.ball_material == SILICON_NITRIDE else steel
     steel = geometry.balls * rating_of_ball(geometry.ball_diameter, geometry.pitch_diameter, geometry.contact_angle)
     steel *= geometry.ball_rows
     return HYBRID_RATING * steel if geometry.ball_material == SILICON_NITRIDE else steel
@@ -63,14 +69,17 @@ def ball_dynamic_rating(geometry: BallGeometry, quality: float = 1.3) -> float:
     >>> round(1e-3 * ball_dynamic_rating(BallGeometry("6208", 11.91e-3, 60e-3, 9, 0.515, 0.52)), 1)
     28.9
     """
+    diameter = geometry.ball_diameter / _MM
+    size = diameter**1.8 if diameter <= _LARGE else 3.647 * diameter**1.4
+    if geometry.thrust:
+        factor = _THRUST_DYNAMIC * (geometry.ball_diameter / geometry.pitch_diameter) ** 0.3
+        return float(quality * factor * geometry.balls ** (2.0 / 3.0) * size)
     angle, gamma = geometry.contact_angle, geometry.gamma
     conformity = max(_GROOVE, geometry.inner_conformity), max(_GROOVE, geometry.outer_conformity)
     across = [f / (2.0 * f - 1.0) for f in conformity]
     both = 1.04 * ((1.0 - gamma) / (1.0 + gamma)) ** 1.72 * (across[0] / across[1]) ** 0.41
     factor = 0.95 * 39.9 * (1.0 + both ** (10.0 / 3.0)) ** -0.3 * (2.0 * across[0]) ** 0.41
     factor *= gamma**0.3 * (1.0 - gamma) ** 1.39 / (1.0 + gamma) ** (1.0 / 3.0)
-    diameter = geometry.ball_diameter / _MM
-    size = diameter**1.8 if diameter <= _LARGE else 3.647 * diameter**1.4
     return float(
         quality * geometry.ball_rows**0.7 * factor * math.cos(angle) ** 0.7 * geometry.balls ** (2.0 / 3.0) * size
     )
@@ -118,6 +127,9 @@ def ball_diameter(name: str, rating: float, pitch: float, angle: float, section:
         low, high = (middle, high) if rating_of_ball(middle, pitch, angle) < rating else (low, middle)
     return 0.5 * (low + high)
 
+
+THRUST_FACTOR, _THRUST_DYNAMIC = 61.6, 146.1
+"""Factors of thrust ball bearings: f0 of ISO 76, and f_c of ISO 281 over (Dw/d_m)^0.3."""
 
 _GROOVE = 0.52
 """Conformity of both grooves with which ISO 281 rates."""

@@ -106,7 +106,8 @@ def cylindrical_ratings(geometry: BearingGeometry) -> tuple[float, float]:
         The bearing.
     """
     rollers = Rollers(geometry.roller_diameter, geometry.roller_length, geometry.rollers)
-    return ratings(rollers, geometry.pitch_diameter)
+    dynamic, static = ratings(rollers, geometry.pitch_diameter)
+    return geometry.row_count ** (7.0 / 9.0) * dynamic, geometry.row_count * static
 
 
 def with_static_rating(diameter: float, count: float, pitch: float, rating: float, angle: float = 0.0) -> Rollers:

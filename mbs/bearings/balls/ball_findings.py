@@ -13,7 +13,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.hertz import POINT_LIMIT
-from ehdmaps.physics.point.ball_geometry import BallGeometry
+from ehdmaps.physics.point.ball_geometry import LARGEST_ANGLE, BallGeometry
 from mbs.bearings.balls.ball_bearing import BallForce, BallLoads
 from mbs.model.findings import CARRIES, OPEN, SIDES, Cause, Finding, Gauge
 
@@ -44,7 +44,7 @@ def ball_gauge(force: BallForce, balls: BallLoads) -> Gauge:
     ]
     pressure = np.array([float(np.max(side)) for side in ball_pressures(force, balls)])
     load = balls.load
-    if force.geometry.spherical:  # idle balls slide along the sphere, until the inner groove holds them
+    if force.geometry.spherical or force.geometry.thrust:  # idle balls slide out until both grooves hold them
         load = np.where(load[0] <= balls.centrifugal, 0.0, load)
     return Gauge("ball", load, pressure, POINT_LIMIT, tuple(one for one in own if one is not None))
 
@@ -78,8 +78,8 @@ def groove_half_width(geometry: BallGeometry, side: int) -> float:
 
 
 def _height(geometry: BallGeometry) -> float:
-    """Height of the loaded shoulder over the ball diameter."""
-    return SHOULDERS[geometry.contact_angle != 0.0]
+    """Height of the loaded shoulder over the ball diameter; washers have two alike."""
+    return SHOULDERS[geometry.contact_angle != 0.0 and not geometry.thrust]
 
 
 def _end(geometry: BallGeometry, side: int) -> float:
@@ -93,12 +93,13 @@ def _shoulder(force: BallForce, balls: BallLoads) -> Finding | None:
     """Ellipses that reach over the shoulder of their groove."""
     geometry = force.geometry
     height, half = _height(geometry), 0.5 * geometry.ball_diameter
+    bottom = LARGEST_ANGLE if geometry.thrust else 0.0
     worst, place = 1.0, ""
     for side, contact in enumerate(geometry.contacts(force.material)):
         end = 0.5 * math.pi if side == 1 and geometry.spherical else _end(geometry, side)
         carries = balls.load[side] > CARRIES * balls.load[side].max()
         _, across = contact.semi_axes(balls.load[side])
-        reach = np.abs(balls.contact_angle[side]) + np.arcsin(np.minimum(across / half, 1.0))
+        reach = np.abs(np.abs(balls.contact_angle[side]) - bottom) + np.arcsin(np.minimum(across / half, 1.0))
         reach = float(np.max(reach, where=carries, initial=0.0))
         if reach / end > worst:
             worst = reach / end

@@ -11,6 +11,7 @@ from __future__ import annotations
 import dataclasses
 import math
 
+from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.solids import STEEL, Material
@@ -51,6 +52,11 @@ def mounted(
     InputError
         If seats and rings do not fit together.
     """
+    if geometry.thrust:
+        raise InputError(
+            f"fit of the {geometry.kind} {geometry.name}: got a fit, or temperatures of its rings; allowed: none, as "
+            "washers of thrust bearings have no radial clearance that they would change"
+        )
     found = operating_clearance(raceways_of(geometry), mounting, inner, outer, geometry.ring_material or ring)
     taken = found.by_temperature + found.by_fits
     longer = mounting.expansion * (inner - outer)

@@ -44,11 +44,23 @@ class BallPoint(LocatingPoint):
     film_errors: FloatArray
 
     @staticmethod
+    def start(force: BallForce, load: FloatArray) -> FloatArray | None:
+        """Place of thrust bearings, see `LocatingPoint.start`: balls that nothing presses have none of their own."""
+        way = math.copysign(1.0, force.geometry.contact_angle)
+        if not (force.geometry.thrust and load[0] * way > 0.0):
+            return None
+        from ehdmaps.physics.point.row_catalogue import pressed_by  # with what few bearings need
+
+        return np.array([way * pressed_by(force.geometry, abs(load[0]), force.material), 0.0, 0.0])
+
+    @staticmethod
     def advice(force: BallForce, load: FloatArray, speeds: tuple[float, float]) -> str:
         """Advice on the axial load, see `LocatingPoint.advice`."""
         angle = force.geometry.contact_angle
         if not angle or len({row.way for row in force.geometry.rows}) > 1:
             return ""
+        if force.geometry.thrust:
+            return f"; a thrust bearing carries a {'positive' if angle > 0.0 else 'negative'} axial load alone"
         return (
             f"; an angular contact bearing falls apart without a {'positive' if angle > 0.0 else 'negative'} axial "
             "load, of about the radial one times the tangent of its contact angle"

@@ -213,7 +213,7 @@ def _refuse_axial(arguments: argparse.Namespace, problems: list[str]) -> None:
 def _too_many(asked: Asked, operating: Operating) -> str:
     """A problem with the number of slices at all points; empty without one."""
     points, slices = len(operating.loads) * len(operating.speeds), asked.options["slices"]
-    if asked.geometry.rollers * slices * points <= MOST_SLICES_IN_ALL:
+    if asked.geometry.rolling_elements * slices * points <= MOST_SLICES_IN_ALL:
         return ""
     return (
         f"--slices: got {slices} for all rollers at {points} points; allowed: {MOST_SLICES_IN_ALL} slices in all; take "

@@ -365,7 +365,9 @@ def assumed_clearance(geometry: BearingGeometry | BallGeometry | TaperedGeometry
         Whether the option --clearance was given.
     """
     reach = clearance_range(geometry)
-    return [] if given else ["no clearance" if reach is None else reach.words]
+    if given or geometry.thrust:
+        return []
+    return ["no clearance" if reach is None else reach.words]
 
 
 def read_oil(

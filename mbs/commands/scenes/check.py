@@ -98,7 +98,8 @@ def _bearings(model: Model) -> Iterator[str]:
         assert bearing.source is not None  # bearings of scenes have one
         yield (
             f"  bearing {spec.name}: {spec.geometry.title}{' (estimated)' if spec.geometry.estimated else ''}, "
-            f"{spec.geometry.rollers} rollers, clearance {MICROMETRE.text(spec.geometry.diametral_clearance)}, "
+            f"{spec.geometry.rolling_elements} rollers{spec.geometry.row_words}, "
+            f"clearance {MICROMETRE.text(spec.geometry.diametral_clearance)}, "
             f"{_where(model.scene, spec)}; {bearing.source.words}"
         )
     for other in model.scene.located:
@@ -124,7 +125,7 @@ def _located(spec: LocatingSpec) -> str:
     geometry, angle = spec.geometry, math.degrees(spec.geometry.contact_angle)
     estimated = " (estimated)" if geometry.estimated else ""
     words = [spec.elements]
-    if geometry.clearance is not None:
+    if geometry.has_clearance:
         words.append(f"clearance {MICROMETRE.text(geometry.clearance)}")
     if isinstance(geometry, RibbedGeometry):
         words.append(f"ribs carry {geometry.ways}, axial clearance {MICROMETRE.text(geometry.axial_clearance)}")

@@ -107,8 +107,9 @@ def _about(description: Description, point: BallPoint) -> list[str]:
     return [
         f"{geometry.balls} balls of {1e3 * geometry.ball_diameter:.4g} mm on {1e3 * geometry.pitch_diameter:.4g} mm, "
         f"grooves {geometry.inner_conformity:.4g} and {geometry.outer_conformity:.4g}, contact angle "
-        f"{DEGREE.value(geometry.contact_angle):.4g} deg, {play} {MICROMETRE.text(geometry.clearance)}"
-        f"{beside_class(geometry)}",
+        f"{DEGREE.value(geometry.contact_angle):.4g} deg"
+        + f", {play} {MICROMETRE.text(geometry.clearance)}{beside_class(geometry)}"
+        * geometry.has_clearance,
         *([geometry.row_words + preload_words(geometry)] if geometry.row_words else []),
         *(["; ".join(materials)] if materials else []),
         f"{TEMPERATURE.text(description.temperature)}, {tilting(description, 'ball')}",

@@ -337,7 +337,7 @@ def _passes(place: int) -> Callable[[Any, Description], float]:
     """Reader of one of the frequencies of `Passes`."""
 
     def read(point: Any, description: Description) -> float:
-        found = passes_of(point.geometry, point.elements.angle.size, point.inner_speed, point.outer_speed)
+        found = passes_of(point.geometry, point.geometry.row_elements, point.inner_speed, point.outer_speed)
         return found[place] / (2.0 * math.pi)
 
     return read

@@ -164,6 +164,8 @@ def _life(element: str, point: Any, row: Row) -> list[str]:
     own = "" if math.isnan(film) else f", {ratio_of_films(film):.2g} by the film"
     if kappa < LEAST_RATIO:
         return [words, f"viscosity ratio {kappa:.2g}{own}: below {LEAST_RATIO:g} ISO 281 has no a_ISO"]
+    if point.geometry.thrust:
+        return [words, f"viscosity ratio {kappa:.2g} by ISO 281{own}; a_ISO of thrust bearings: not yet"]
     factors = life_factors(element, point, row)
     return [
         words,
@@ -193,7 +195,7 @@ def rating_words(element: str, point: Any) -> str:
 
 
 def life_factors(element: str, point: Any, row: Row) -> list[float]:
-    """Factors a_ISO in slightly contaminated and in filtered oil; NaN where ISO 281 has none.
+    """Factors a_ISO in slightly contaminated and in filtered oil; NaN where ISO 281 has none, and for thrust bearings.
 
     Parameters
     ----------
@@ -206,7 +208,7 @@ def life_factors(element: str, point: Any, row: Row) -> list[float]:
     """
     kind: Elements = "ball" if element == "ball" else "roller"
     kappa = row["viscosity_ratio"]
-    if math.isnan(kappa):
+    if math.isnan(kappa) or point.geometry.thrust:
         return [math.nan, math.nan]
     limit = fatigue_limit(point.ratings[1], point.geometry.pitch_diameter, kind) / row["equivalent_load"]
     return [a_iso(kappa, cleanliness * limit, kind) for cleanliness in (CONTAMINATED, CLEAN)]

@@ -54,7 +54,7 @@ def _elements(spec: BearingSpec | LocatingSpec) -> int:
     """Number of rolling elements."""
     if isinstance(spec, BallSpec):
         return int(spec.geometry.balls * spec.geometry.ball_rows)
-    return int(spec.geometry.rollers)
+    return int(spec.geometry.rolling_elements)
 
 
 def _element(table: Table, on: str | None, count: int) -> int | None:

@@ -21,9 +21,9 @@
 static const int LOADED[4] = {1, 2, 4, 5};
 
 /* Where a roller stands and how it moves: direction, approach in its middle and its growth along the roller, the rates
- * of both, and a bound that no approach of a slice is above. */
+ * of both, a bound that no approach of a slice is above, and the place of its row. */
 typedef struct roller {
-    double cosine, sine, gap, tilt, rate, tilt_rate, deepest;
+    double cosine, sine, gap, tilt, rate, tilt_rate, deepest, row;
 } roller;
 
 /* Slices of a roller: so many of them are computed, those of a mirrored one for both sides. */
@@ -79,10 +79,11 @@ static roller roller_of(const ehd_cylinder *bearing, const ehd_ring_motion *m, i
     roller r;
     r.cosine = m->cage_cosine * bearing->cosine[j] - m->cage_sine * bearing->sine[j];
     r.sine = m->cage_sine * bearing->cosine[j] + m->cage_cosine * bearing->sine[j];
-    r.gap = m->y * r.cosine + m->z * r.sine - bearing->half_clearance;
+    r.row = bearing->row ? bearing->row[j] : 0.0;
     r.tilt = m->theta_z * r.cosine - m->theta_y * r.sine;
-    r.rate = m->y_rate * r.cosine + m->z_rate * r.sine;
+    r.gap = m->y * r.cosine + m->z * r.sine - bearing->half_clearance + r.row * r.tilt;
     r.tilt_rate = m->theta_z_rate * r.cosine - m->theta_y_rate * r.sine;
+    r.rate = m->y_rate * r.cosine + m->z_rate * r.sine + r.row * r.tilt_rate;
     if (bearing->added) {
         const double *added = bearing->added + 4 * j;
         r.gap += added[0] + added[2];
@@ -423,14 +424,25 @@ static void finish_matrix(double matrix[6][6], double factor) {
     }
 }
 
+/* Sums over 1, x and x^2 about the middle of the bearing, from those about the middle of a roller at p. */
+EHD_INLINE void about_middle(const double s[3], double p, double out[3]) {
+    out[0] = s[0];
+    out[1] = s[1] + p * s[0];
+    out[2] = s[2] + p * (2.0 * s[1] + p * s[0]);
+}
+
 /* Add a roller to the force on the ring and its derivatives. */
 static void add_roller(const roller *r, const sums *sum, ehd_bearing_force *answer) {
+    const double moment = sum->w[1] + r->row * sum->w[0];
+    double k[3], c[3];
+    about_middle(sum->k, r->row, k);
+    about_middle(sum->c, r->row, c);
     answer->force[1] -= r->cosine * sum->w[0];
     answer->force[2] -= r->sine * sum->w[0];
-    answer->force[4] += r->sine * sum->w[1];
-    answer->force[5] -= r->cosine * sum->w[1];
-    add_matrix(answer->stiffness, r, sum->k);
-    add_matrix(answer->damping, r, sum->c);
+    answer->force[4] += r->sine * moment;
+    answer->force[5] -= r->cosine * moment;
+    add_matrix(answer->stiffness, r, k);
+    add_matrix(answer->damping, r, c);
 }
 
 static void no_bearing_force(ehd_bearing_force *answer) {

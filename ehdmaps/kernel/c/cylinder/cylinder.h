@@ -7,7 +7,7 @@
  *
  * Each slice of each roller carries the load of the law, of a roller between both raceways, times its length:
  *
- *     approach = y cos + z sin - clearance/2 + x (theta_z cos - theta_y sin) - profile(x)
+ *     approach = y cos + z sin - clearance/2 + (p + x) (theta_z cos - theta_y sin) - profile(x),    p the place of its row
  *
  * Between rings that do not tilt against each other slices of the same depth carry the same. So of a symmetric bearing
  * only one half is computed there, and of one whose slices have weights one of each depth, without moments.
@@ -26,6 +26,7 @@ typedef struct ehd_cylinder {
     const double *weight;                       /* (slices): how many each stands for; null where rings tilt */
     const double *added;                        /* (rollers, 2, 2): approach and rate that deviations from its form add to
                                                  * both contacts, see ../run/deviations.h; null without any */
+    const double *row;                          /* (rollers): place of the row of each along x [m]; null: one row */
 } ehd_cylinder;
 
 /* Motion of the inner ring against the outer one, as far as rollers feel it, and where the cage stands. */

@@ -24,7 +24,8 @@ static block_rollers rollers_of_block(const ehd_cylinder_block *block, int64_t b
          sizes[RING_MOST_TILT], sizes[RING_HALF_LENGTH], lowest, highest, rings->positions + b * rings->most_slices,
          profile, rings->cosine + b * rings->most_rollers, rings->sine + b * rings->most_rollers,
          rings->felt[b] == RING_LEVEL ? rings->weights + b * rings->most_slices : NULL,
-         deviations_of(rings->deviations, b, at)},
+         deviations_of(rings->deviations, b, at),
+         rings->row_places + b * rings->most_rollers},
         {block->states + row * block->room, block->place, block->row, 4 * slices, 0},
         &block->laws[rings->films_of[row]].law,
     };
@@ -114,7 +115,8 @@ static void deviate(const double *added, int64_t j, ring_roller *placed, ring_ro
  * rates of that. */
 static roller contact_roller(const ehd_cylinder *shape, const ring_roller *placed, const ring_roller *moving, int side) {
     const roller r = {1.0, 0.0, placed->approach[side], placed->tilt, moving->approach[side], moving->tilt,
-                      placed->approach[side] + (shape->half_length * fabs(placed->tilt) - shape->least_profile)};
+                      placed->approach[side] + (shape->half_length * fabs(placed->tilt) - shape->least_profile),
+                      placed->row};
     return r;
 }
 
@@ -195,6 +197,7 @@ static void roller_power(const ehd_cylinder *bearing, const roller *r, const sli
         out[2] += weight * w * x;
         out[3] += weight * (w + more);
     }
+    out[2] += r->row * out[1];
 }
 
 /* Power that the contacts of a bearing with massless rollers dissipate, the moment that it asks of its cage, and the power

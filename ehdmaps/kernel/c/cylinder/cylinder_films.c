@@ -88,6 +88,6 @@ void ehd_cylinder_direction(const ehd_cylinder *bearing, double cage_angle, int 
     const roller r = roller_of(bearing, &motion, j);
     column[0] = r.cosine;
     column[1] = r.sine;
-    column[2] = -bearing->position[i] * r.sine;
-    column[3] = bearing->position[i] * r.cosine;
+    column[2] = -(r.row + bearing->position[i]) * r.sine;
+    column[3] = (r.row + bearing->position[i]) * r.cosine;
 }

@@ -12,9 +12,10 @@ EHD_SIZE_OF(ehd_rings)
 EHD_SIZE_OF(ehd_film_course)
 
 /* Where a roller stands, and how it is pressed: direction; approach in the middle of the inner and of the outer contact,
- * without the profile [m], and how it grows along the roller. A massless roller has the first approach alone. */
+ * without the profile [m], and how it grows along the roller; place of its row. A massless roller has the first approach
+ * alone. */
 typedef struct ring_roller {
-    double cosine, sine, approach[2], tilt;
+    double cosine, sine, approach[2], tilt, row;
 } ring_roller;
 
 /* Sums over the slices of a contact of a roller: loads [N], and loads times their places [N m]; slopes by the approach,
@@ -46,7 +47,8 @@ static int ring_within(const ehd_rings *rings, int64_t b, const double *felt, co
 
 static ring_roller ring_direction(const ehd_rings *rings, int64_t b, int64_t j, const double cage[2]) {
     const double c = rings->cosine[b * rings->most_rollers + j], s = rings->sine[b * rings->most_rollers + j];
-    const ring_roller found = {cage[0] * c - cage[1] * s, cage[1] * c + cage[0] * s, {0.0, 0.0}, 0.0};
+    const ring_roller found = {cage[0] * c - cage[1] * s, cage[1] * c + cage[0] * s, {0.0, 0.0}, 0.0,
+                               rings->row_places[b * rings->most_rollers + j]};
     return found;
 }
 
@@ -55,8 +57,8 @@ static ring_roller massless_roller(const ehd_rings *rings, int64_t b, int64_t j,
                                    const double *felt) {
     ring_roller found = ring_direction(rings, b, j, cage);
     const double c = found.cosine, s = found.sine;
-    found.approach[0] = felt[0] * c + felt[1] * s - ring_sizes(rings, b)[RING_HALF_CLEARANCE];
     found.tilt = rings->felt[b] > RING_LEVEL ? felt[3] * c - felt[2] * s : 0.0;
+    found.approach[0] = felt[0] * c + felt[1] * s - ring_sizes(rings, b)[RING_HALF_CLEARANCE] + found.row * found.tilt;
     return found;
 }
 
@@ -67,9 +69,9 @@ static ring_roller body_motion(const ehd_rings *rings, int64_t b, int64_t j, con
     const double *felt = motion + rings->firsts[b], own = motion[rings->alone[b] + j];
     ring_roller found = ring_direction(rings, b, j, cage);
     const double c = found.cosine, s = found.sine;
-    found.approach[0] = felt[0] * c + felt[1] * s - own;
-    found.approach[1] = own - felt[2] * c - felt[3] * s;
     found.tilt = 0.5 * (felt[5] * c - felt[4] * s);
+    found.approach[0] = felt[0] * c + felt[1] * s - own + found.row * found.tilt;
+    found.approach[1] = own - felt[2] * c - felt[3] * s + found.row * found.tilt;
     return found;
 }
 
@@ -106,6 +108,13 @@ static ring_contact sum_slices(const ehd_rings *rings, int64_t b, const double *
     return sum;
 }
 
+/* The same about the middle of the bearing, of a roller whose row stands at p. */
+static ring_contact ring_about_middle(const ring_contact *of, double p) {
+    const ring_contact found = {of->load, of->moment + p * of->load, of->flat, of->mixed + p * of->flat,
+                                of->tilted + p * (2.0 * of->mixed + p * of->flat)};
+    return found;
+}
+
 /* Begin the answer of a bearing with massless rollers. */
 static void begin_massless(const ehd_rings *rings, int64_t b, ehd_answers *answers) {
     const int64_t first = rings->firsts[b], felt = rings->felt[b];
@@ -116,9 +125,10 @@ static void begin_massless(const ehd_rings *rings, int64_t b, ehd_answers *answe
 }
 
 /* Add what a massless roller does to the rings; its slopes are those that are asked for. */
-static void add_massless(const ehd_rings *rings, int64_t b, const ring_roller *roller, const ring_contact *contact,
+static void add_massless(const ehd_rings *rings, int64_t b, const ring_roller *roller, const ring_contact *slices,
                          ehd_answers *answers) {
     const int64_t first = rings->firsts[b], felt = rings->felt[b];
+    const ring_contact about = ring_about_middle(slices, roller->row), *contact = &about;
     const double flat[4] = {roller->cosine, roller->sine, 0.0, 0.0};
     const double tilted[4] = {0.0, 0.0, -roller->sine, roller->cosine};
     for (int64_t p = 0; p < felt; p++) {
@@ -148,8 +158,9 @@ static void begin_bodies(const ehd_rings *rings, int64_t b, const ehd_moment *at
 
 /* Add what a contact of a roller that is a body does to the ring and to the roller. */
 static void add_body(const ehd_rings *rings, int64_t b, int64_t j, int64_t side, const ring_roller *roller,
-                     const ring_contact *contact, ehd_answers *answers) {
+                     const ring_contact *slices, ehd_answers *answers) {
     const int64_t first = rings->firsts[b], ring = first + 2 * side, tilts = first + RING_TILT_PLACE;
+    const ring_contact about = ring_about_middle(slices, roller->row), *contact = &about;
     const int64_t place[5] = {ring, ring + 1, tilts, tilts + 1, rings->alone[b] + j};
     const double sign = side == 0 ? 1.0 : -1.0;
     const double flat[5] = {sign * roller->cosine, sign * roller->sine, 0.0, 0.0, -sign};

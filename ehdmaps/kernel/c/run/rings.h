@@ -29,6 +29,7 @@ typedef struct ehd_rings {
     const double *positions, *profiles, *weights; /* (count, most_slices): places [m]; profiles of both contacts [m]; how
                                         * many slices each stands for */
     const double *cosine, *sine;       /* (count, most_rollers): directions of the rollers in the cage */
+    const double *row_places;          /* (count, most_rollers): place of the row of each roller along x [m] */
     const double *outward;             /* (count): centrifugal force of a roller that is a body by speed^2 [N s2/rad2] */
     const ehd_deviations *deviations;  /* (count): from its form; null where no bearing has any */
 } ehd_rings;

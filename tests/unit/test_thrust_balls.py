@@ -1,0 +1,123 @@
+"""Single direction thrust ball bearings: closed Hertz, ratings, what washers do not have; and balls beyond a groove."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.special import ellipe, ellipk
+
+from ehdmaps.errors import InputError
+from ehdmaps.jobs.balls import balls_of
+from ehdmaps.physics.designations.reader import table
+from ehdmaps.physics.point.ball_catalogue import ball_estimate
+from ehdmaps.physics.point.ball_geometry import BallGeometry
+from ehdmaps.physics.point.ball_ratings import ball_dynamic_rating, ball_static_rating
+from ehdmaps.physics.solids import STEEL
+from mbs.bearings.balls.ball_bearing import BallForce
+from mbs.bearings.balls.ball_mounting import mounted
+from mbs.bearings.balls.laws import dry_law
+from mbs.bearings.thermal import Mounting
+from mbs.cli import main
+from mbs.life import ball_reference_life
+
+THRUST = ball_estimate("51208")
+
+
+def force_of(geometry: BallGeometry) -> BallForce:
+    return BallForce(geometry, dry_law(geometry, damping_time=1e-5))
+
+
+def hertz_approach(load: float, diameter: float, conformity: float) -> float:
+    """Approach of a ball in a straight groove, by the complete elliptic integrals and bisection of their equation."""
+    modulus = STEEL.youngs_modulus / (1.0 - STEEL.poisson_ratio**2) / 2.0  # of both bodies together
+    along, across = 2.0 / diameter, 2.0 / diameter - 1.0 / (conformity * diameter)  # curvatures of the pair
+    low, high = 1e-9, 1.0 - 1e-9  # (b/a)^2
+    for _ in range(200):
+        k2 = 0.5 * (low + high)
+        m = 1.0 - k2
+        ratio = (ellipe(m) / k2 - ellipk(m)) / (ellipk(m) - ellipe(m))
+        low, high = (k2, high) if ratio > along / across else (low, k2)
+    m = 1.0 - k2
+    a = (3.0 * load * ellipe(m) / (2.0 * math.pi * k2 * (along + across) / 2.0 * modulus)) ** (1.0 / 3.0)
+    return 3.0 * load * ellipk(m) / (2.0 * math.pi * modulus * a)
+
+
+def test_axial_stiffness_is_that_of_closed_hertz():
+    """F = Z Q, and both contacts in series yield 2 delta(Q); K = 1.5 F/x. Grooves stand A apart: no angle changes."""
+    for force in (100.0, 5e3, 40e3):
+        yields = 2.0 * hertz_approach(force / THRUST.balls, THRUST.ball_diameter, THRUST.inner_conformity)
+        found, stiffness, _ = force_of(THRUST)(np.array([yields, 0.0, 0.0, 0.0, 0.0, 0.0]))
+        assert found[0] == pytest.approx(-force, rel=1e-6)  # iterations of both
+        assert stiffness[0, 0] == pytest.approx(1.5 * force / yields, rel=1e-6)
+        np.testing.assert_allclose(found[1:], 0.0, atol=1e-9 * force)
+        # against a tilt springs stand on the pitch circle, and across it balls swing on the line of both grooves
+        pitch, length = 0.5 * THRUST.pitch_diameter, THRUST.groove_distance + yields
+        assert stiffness[4, 4] == pytest.approx(0.5 * pitch**2 * stiffness[0, 0], rel=1e-6)
+        assert stiffness[1, 1] == pytest.approx(0.5 * force / length, rel=1e-6)
+
+
+def test_turned_round_it_carries_the_other_way():
+    back = force_of(BallGeometry("back", 10e-3, 54e-3, 15, 0.54, 0.54, -0.5 * math.pi))
+    for x, carries in ((-1e-5, True), (1e-5, False)):
+        force = back(np.array([x, 0.0, 0.0, 0.0, 0.0, 0.0]))[0]
+        assert (force[0] > 0.0) == carries
+
+
+def test_catalogues_tell_balls_as_they_are_made():
+    """C0 and C agree on balls of a whole number of 32nds of an inch: by chance a sixth would be within 0.4 %."""
+    near, ratios = [], []
+    for series, rows in table("balls")["thrust"].items():
+        for bore, _, _, dynamic, static in rows:
+            code = {10: "00", 12: "01", 15: "02", 17: "03"}.get(bore, f"{bore // 5:02d}")
+            found = ball_estimate(series + code)
+            assert ball_static_rating(found) == pytest.approx(static, rel=1e-9)
+            ratios.append(ball_dynamic_rating(found) / dynamic)
+            size = found.ball_diameter / 25.4e-3 * 32.0
+            near.append(abs(size / round(size) - 1.0) < 0.004)
+    assert len(near) == 64 and all(near)
+    assert np.max(np.abs(np.array(ratios) - 1.0)) < 0.01
+
+
+def test_an_axial_load_is_its_equivalent_load():
+    load = np.full((2, THRUST.balls), 5e3 / THRUST.balls)
+    life = ball_reference_life(THRUST, load, ball_dynamic_rating(THRUST))
+    assert life.load == pytest.approx(5e3, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("ask", "said"),
+    [
+        (lambda: ball_estimate("51208 C3"), "allowed: no class of radial clearance: washers of thrust ball bearings"),
+        (lambda: THRUST.with_clearance(1e-5), "clearance: got 10 um; allowed: 0, as washers of thrust bearings have"),
+        (lambda: mounted(THRUST, Mounting(), 320.0, 300.0), "fit of the ball bearing 51208: got a fit"),
+        (lambda: balls_of('{ name = "51208", diametral_clearance = "9 um" }'), "clearance: got 9 um; allowed: 0"),
+        (lambda: ball_estimate("51299"), "designation: got '51299'"),
+        (lambda: ball_estimate("7208B").known({"contact_angle": 1.6}, ""), "allowed: finite and from -90 to 90 deg"),
+    ],
+)
+def test_what_washers_do_not_have_is_refused(ask, said):
+    with pytest.raises(InputError, match=said):
+        ask()
+
+
+def test_the_command_asks_for_an_axial_load(capsys):
+    ask = ["bearing", "51208", "--speed", "1500 rpm", "--law", "hertz"]
+    assert main([*ask, "--load", "1 kN"]) == 1
+    assert "a thrust bearing carries a positive axial load alone" in capsys.readouterr().err
+    assert main([*ask, "--load", "0 N", "--axial", "5 kN"]) == 0
+    out = capsys.readouterr().out
+    assert "a_ISO of thrust bearings: not yet" in out and "clearance" not in out.replace("clearance 0", "clearance")
+    assert "51208: thrust ball bearing" in out
+
+
+@pytest.mark.parametrize("name", ["6208", "7208B", "3208"])
+def test_a_ring_beyond_the_grooves_is_too_far(name):
+    """Nearer it carries; beyond A cos(alpha) the inner groove would press from a raceway that is not there."""
+    geometry = ball_estimate(name)
+    force, far = force_of(geometry), geometry.radial_distance
+    assert force(np.array([0.0, -0.9 * far, 0.0, 0.0, 0.0, 0.0]))[0][1] > 0.0
+    for pose in ([0.0, -1.02 * far, 0.0, 0.0, 0.0, 0.0], [0.0, -0.8 * far, 0.8 * far, 0.0, 0.0, 0.0]):
+        with pytest.raises(InputError, match=f"and less than {far:.6g} m across the axis at any ball"):
+            force(np.array(pose))
