@@ -57,8 +57,8 @@ def films(geometry):
 def exported(tmp_path_factory):
     """Bearing, laws over the speed and compiled kernel: dry deep groove, balls about the bisector; angular, films."""
     folder, found = tmp_path_factory.mktemp("balls"), {}
-    for name, filmed in (("6208", False), ("7208B", True), ("3208", True), ("1208", True)):
-        geometry = dataclasses.replace(ball_estimate(name), hypothesis=HYPOTHESES[0 if filmed else 2])
+    for name, filmed in (("6208", False), ("7208B", True), ("3208", True), ("1208", True), ("51208", False)):
+        geometry = dataclasses.replace(ball_estimate(name), hypothesis=HYPOTHESES[2 if name == "6208" else 0])
         ends = (geometry.entrainment_speed(rpm * RPM) for rpm in (1000.0, 6000.0))
         dry = dry_law(geometry, damping_time=DAMPER)
         laws = BALLS.speed_laws(BallForce(geometry, dry), films(geometry) if filmed else None, tuple(ends))
@@ -79,7 +79,7 @@ def assert_same(found, wanted, arm, within=EXACT):
 
 
 @pytest.mark.parametrize("mirrored", [False, True])
-@pytest.mark.parametrize("name", ["6208", "7208B", "3208", "1208"])
+@pytest.mark.parametrize("name", ["6208", "7208B", "3208", "1208", "51208"])
 def test_kernel_is_that_of_python(exported, name, mirrored):
     """At random poses and velocities, with clearance and preload, at rest and fast, with rings against each other."""
     nominal, laws, kernel = exported[name]
@@ -88,6 +88,9 @@ def test_kernel_is_that_of_python(exported, name, mirrored):
     way = -1.0 if mirrored else 1.0
     loaded = 0
     for clearance in (20e-6, 0.0, -10e-6):
+        if nominal.thrust and clearance:
+            assert kernel.make(clearance, mirrored) == BAD_ARGUMENT
+            continue
         assert kernel.make(clearance, mirrored) == 0
         geometry = dataclasses.replace(nominal, clearance=clearance, contact_angle=way * nominal.contact_angle)
         for inner, outer in ((0.0, 0.0), (300.0, 0.0), (900.0, -80.0), (0.0, 700.0), (850.0, -700.0)):
@@ -105,7 +108,7 @@ def test_kernel_is_that_of_python(exported, name, mirrored):
                 )
                 assert_same(found, wanted, force.shape.arm or 0.02, OF_SPHERES if name == "1208" else EXACT)
                 loaded += bool(np.any(wanted[0]))
-    assert loaded > 40
+    assert loaded > (15 if nominal.thrust else 40)
 
 
 def test_cage_settles_as_in_machines(exported):

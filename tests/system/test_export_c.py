@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import shutil
 import subprocess
 import sys
@@ -12,6 +13,7 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import OutsideMapError
+from ehdmaps.exports.c.kernel import KernelOptions, kernel_files
 from ehdmaps.jobs.cli import main
 from ehdmaps.maps.emap import EHDMap, open_map
 from mbs import Bearing, BearingForce
@@ -145,6 +147,20 @@ def test_bearing(centrifugal, law, small_map, clearance, slices, q):
     for u, T, own in conditions(law, 12, q=(0.0, q)):
         for size in (2e-6, 4e-5):
             assert_bearing(centrifugal, force, rng, size, u, T, own)
+
+
+def test_a_bearing_with_two_rows(small_map, law, tmp_path):
+    """Rollers of both rows, at their places, with tilts and moments."""
+    emap = open_map(small_map)
+    two = dataclasses.replace(emap.bearing, row_distance=1.3 * emap.bearing.roller_length)
+    emap = EHDMap(emap.dataset.assign_attrs(geometry=json.dumps(two.record())), emap.backbone)
+    for name, text in kernel_files(emap, KernelOptions(outside="clamp", centrifugal=True), ("two rows",)).items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    kernel, geometry = Kernel(compiled(tmp_path, "-shared", "-fPIC")), emap.bearing.with_clearance(1e-6)
+    force, rng = BearingForce(Bearing(geometry, slices=4), law), np.random.default_rng(4)
+    assert geometry.rolling_elements == 2 * geometry.rollers and kernel.make(1e-6, 4) == 0
+    for u, T, own in conditions(law, 4, q=(0.0, 300.0)):
+        assert_bearing(kernel, force, rng, 4e-5, u, T, own)
 
 
 @pytest.mark.parametrize("slices", [1, 2, 5])

@@ -86,7 +86,7 @@ def _width(key):
 @pytest.mark.parametrize(
     ("typed", "name", "told"),
     [
-        ("B7005-C-T-P4S", "7005C", "B: spindle bearing (Schaeffler); T: cage; P4S: class of accuracy"),
+        ("B7005-C-T-P4S", "7005C", "B: spindle bearing (B of Schaeffler, S of GMN); T: cage; P4S: class"),
         ("7014 CD/P4A", "7014C", "D: design of the maker; P4A: class of accuracy"),
         ("7014 CD/HCP4A", "7014C HC", "D: design of the maker; HC: rolling elements of silicon nitride; P4A: class of"),
         ("HCB7014-E-T-P4S", "7014AC HC", "HCB: balls of silicon nitride (Schaeffler); T: cage; P4S"),
@@ -94,6 +94,13 @@ def _width(key):
         ("6205-2RSH/C3", "6205 C3", "2RSH: seals or shields; C3: class of radial clearance"),
         ("HR30205J", "30205", "HR: high capacity (NSK); J: design"),
         ("NU 210 GE9", "NU210", "GE9: not understood, and left out"),
+        ("6208/C3XX0241", "6208 C3", "C3: class of radial clearance; XX0241: not understood, and left out"),
+        ("7914A5TYNDBLP4", "71914AC DBL", "TYN: cage; DBL: set of bearings"),
+        ("7014UCG/GNP4", "7014C", "U: design of NTN; G: for mounting in pairs"),
+        ("S 61914 C TA P4+", "71914C", "B: spindle bearing (B of Schaeffler, S of GMN); TA: cage; P4+: class"),
+        ("NU309EMC3", "NU309 C3", "EM: reinforced, as tables here have it, and its cage; C3"),
+        ("NCF 3010 CV", "NCF3010", "CV: full complement"),
+        ("32210-XL", "32210", "XL: quality of the maker"),
     ],
 )
 def test_each_part_of_a_designation_is_told(typed, name, told):
@@ -110,10 +117,15 @@ def test_each_part_of_a_designation_is_told(typed, name, told):
         ("HCNU210", "rollers of silicon nitride: not yet"),
         ("6208 DB", "DB: set of bearings"),
         ("NJ2310 ECM/V", "V: full complement"),
+        ("6205ETN9", "E: more or larger balls"),
+        ("NU 308 W", "W: cage without E"),
+        ("HSS7010-E-T-P4S-UL", "HSS: smaller balls for high speed"),
     ],
 )
 def test_what_changes_forces_and_is_not_served_is_refused(typed, why):
-    read = {"N": designated, "H": designated, "3": tapered_estimate}.get(typed.removeprefix("HCS")[0], ball_estimate)
+    read = {"N": designated, "H": designated, "3": tapered_estimate}.get(
+        typed.removeprefix("HCS").removeprefix("HSS")[0], ball_estimate
+    )
     with pytest.raises(InputError, match=f"bearing designation: got '{typed}', {why}"):
         read(typed)
 

@@ -12,7 +12,9 @@ from functools import cache
 from importlib import resources
 from typing import NamedTuple
 
-HYBRID, CLEARANCE, MOUNTING, REFUSED, UNKNOWN, SET = "hybrid", "clearance", "mounting", "refused", "unknown", "set"
+HYBRID, CLEARANCE, MOUNTING, REFUSED, UNKNOWN, SET, PAIR = (
+    "hybrid", "clearance", "mounting", "refused", "unknown", "set", "pair",
+)  # fmt: skip
 """Effects of a prefix or suffix beside having a meaning; empty where forces do not know it."""
 
 
@@ -80,8 +82,11 @@ def _whole(row: _Row, text: str) -> bool:
     return any(row.pattern.fullmatch(one) for one in (text, text.rstrip("-"), f"{text}-"))
 
 
+@cache
 def suffixes(text: str, kind: str) -> tuple[Affix, ...] | None:
     """The suffixes of a designation, one by one; None where one is not set apart and in no row.
+
+    A class of clearance, or silicon nitride, counts with something behind it that is not understood, too.
 
     Parameters
     ----------
@@ -94,19 +99,26 @@ def suffixes(text: str, kind: str) -> tuple[Affix, ...] | None:
     --------
     >>> [one.text for one in suffixes("-2RSLTN9/HC5C3", "deep groove ball bearing")]
     ['2RSL', 'TN9', 'HC5', 'C3']
+    >>> [one.text for one in suffixes("/C3XX1", "deep groove ball bearing")]
+    ['C3', 'XX1']
     >>> suffixes(" 2RS GE9", "deep groove ball bearing")[1].effect, suffixes("X", "deep groove ball bearing")
     ('unknown', None)
     """
     body = text.lstrip(" .,/-")
     if not body:
         return ()
-    found = [(row.pattern.match(body), row) for row in _rows("behind", kind)]
-    known = sorted(((one.end(), row) for one, row in found if one), key=lambda each: -each[0])
-    for end, row in known:
-        rest = suffixes(body[end:], kind)
-        if rest is not None:
-            return (Affix(body[:end], row.meaning, row.effect), *rest)
+    counts: Affix | None = None
+    for end in range(len(body), 0, -1):  # the longest first
+        row = next((row for row in _rows("behind", kind) if row.pattern.fullmatch(body[:end])), None)
+        if row is None:
+            continue
+        one = Affix(body[:end], row.meaning, row.effect)
+        if (rest := suffixes(body[end:], kind)) is not None:
+            return (one, *rest)
+        counts = one if row.effect in (CLEARANCE, HYBRID) else counts
     alone = re.match("[A-Z0-9]+", body) if body != text else None
     if alone is None or (rest := suffixes(body[alone.end() :], kind)) is None:
         return None
-    return (Affix(alone[0], "not understood, and left out", UNKNOWN), *rest)
+    begun = () if counts is None or len(counts.text) > alone.end() else (counts,)
+    unknown = alone[0][sum(len(one.text) for one in begun) :]
+    return (*begun, *([Affix(unknown, "not understood, and left out", UNKNOWN)] if unknown else []), *rest)

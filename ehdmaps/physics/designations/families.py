@@ -45,6 +45,9 @@ _FAMILIES = tuple(
         (r"67[ -]?\d\d", "deep groove ball bearing of another series"),
         (r"(?:6[0-3]|6[89])\d", "miniature deep groove ball bearing"),
         (r"(?:HCB|HSS?|XCB|B)?(?:708|709)[ -]?\d\d", "angular contact ball bearing of another series"),
+        (r"(?:BNR|BER|BNC|BAR|BTR|BGR|\d\d(?:BNR|BER|BAR|BTR))[ -]?\d\d", "high speed angular contact ball bearing"),
+        (r"(?:KH|SM|HYS?|HYKH|HYSM) ?6\d{3,4}", "high speed angular contact ball bearing"),
+        (r"(?:JL?M?|LM?|HM|HH|EE|M)\d{5,6}(?:/(?:JL?M?|LM?|HM|HH|EE|M)\d{5,6})?", "tapered roller bearing in inches"),
         (r"(?:UCP?|UK|YAR|YET|YEL|SA|SB|ES?)[ -]?2\d\d", "insert ball bearing"),
         (r"(?:XSU|XU|XR|RB|RA|CRB[CHT]?|RU)[ -]?\d{3,}", "crossed roller bearing"),
     )

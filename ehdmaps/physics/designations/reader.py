@@ -12,7 +12,7 @@ from functools import cache
 from importlib import resources
 from typing import Any, NamedTuple
 
-from ehdmaps.physics.designations.affixes import CLEARANCE, HYBRID, SET, Affix, prefix, suffixes
+from ehdmaps.physics.designations.affixes import CLEARANCE, HYBRID, REFUSED, SET, Affix, prefix, suffixes
 
 CYLINDRICAL, NEEDLE, NEEDLE_CAGE, DEEP_GROOVE, ANGULAR, TAPERED, DOUBLE_ROW, FOUR_POINT, SELF_ALIGNING, DRAWN_CUP = (
     "cylindrical roller bearing",
@@ -40,28 +40,35 @@ class _Kind(NamedTuple):
     suffixes: str = ""
 
 
-_TWO_ROWS = "double row cylindrical roller bearing"
+_PRECISE = "precise cylindrical roller bearing"
 _KINDS = (
-    _Kind(CYLINDRICAL, r"(NUP|NU|NJ|N)[ -]*(10|22|23|2|3)[ -]?(\d\d)"),
+    _Kind(CYLINDRICAL, r"(NUP|NU|NJ|N)[ -]*(22|23|2|3)[ -]?(\d\d)"),
+    _Kind(CYLINDRICAL, r"(NUP|NU|NJ|N)[ -]*(10)[ -]?(\d\d)", _PRECISE),
     _Kind(CYLINDRICAL, r"(NCF)[ -]*(18|22|29|30)[ -]?(\d\d)(?:[ -]?C?V)?"),
-    _Kind(CYLINDRICAL, r"(NN)[ -]*(30)[ -]?(\d\d)", _TWO_ROWS),
-    _Kind(CYLINDRICAL, r"(NNU)[ -]*(49)[ -]?(\d\d)(?:[ -]?B)?", _TWO_ROWS),
+    _Kind(CYLINDRICAL, r"(NN)[ -]*(30)[ -]?(\d\d)", _PRECISE),
+    _Kind(CYLINDRICAL, r"(NNU)[ -]*(49)[ -]?(\d\d)(?:[ -]?B)?", _PRECISE),
     _Kind(CYLINDRICAL, r"(NNCF)[ -]*(50)[ -]?(\d\d)(?:[ -]?C?V)?"),
     _Kind(NEEDLE, r"(R?NAV?)[ -]?(49)[ -]?(\d\d)"),
     _Kind(DRAWN_CUP, r"(HK)[ -]?(\d\d)[ -]?(\d\d)(?:[CF]|TN|TV)?"),
     _Kind(NEEDLE_CAGE, r"(K) ?(\d+[X*]\d+[X*]\d+)"),
     _Kind(DEEP_GROOVE, r"(618|619|160|6[023489])[ -]?(\d\d)"),
-    _Kind(ANGULAR, r"(718|719|7[02389])[ -]?(\d\d)[ .-]?(A5|AC|C|B|E)"),
+    _Kind(ANGULAR, r"(718|719|7[02389])[ -]?(\d\d)[ .-]?U?(A5|AC|AD|C|B|E)"),
     _Kind(DOUBLE_ROW, r"(32|33|52|53)[ -]?(\d\d)[ -]?(A|B)?"),
     _Kind(FOUR_POINT, r"(QJ)[ -]?(10|2|3)[ -]?(\d\d)"),
     _Kind(SELF_ALIGNING, r"(12|13|22|23)[ -]?(\d\d)"),
     _Kind(THRUST, r"(511|512|513|514)[ -]?(\d\d)"),
-    _Kind(TAPERED, r"(302|303|313|320|322|323)[ -]?(\d\d)(?:[ -]?X)?"),
+    _Kind(TAPERED, r"(302|303|313|320|322|323)[ -]?(\d\d)(?:[ -]?X(?!L))?"),
 )
 _PATTERNS = tuple((row, re.compile(rf"(.*?){row.base}(?![0-9])(.*)")) for row in _KINDS)
 _CLASS = re.compile(r"C([2-5NM])|P[2-6]([2-5])")
+_WITHIN = {"V": "full complement", "CV": "full complement", "X": "dimensions of ISO 355", "U": "design of NTN"}
+"""Meanings of what stands within a designation and is no part of its name."""
+
 _ISO_NAMES = {"68": "618", "69": "619", "78": "718", "79": "719", "52": "32", "53": "33"}
 """Series of makers, and their names by ISO."""
+
+_OF_GMN = re.compile(r"^S ?6(0|2|18|19) ?(\d\d) ?([CE])(?![0-9])")
+"""Spindle bearings of GMN: S 6014 C is a 7014C, E has 25 degrees."""
 
 _OF_SPINDLES = ("B", "HCB", "XCB")
 """Prefixes of a maker whose suffix E is an angle of 25 degrees."""
@@ -137,11 +144,11 @@ def read_designation(text: str) -> Designation | None:
     --------
     >>> [read_designation(text).text for text in ("nu 308 ecp/C4", "6205-2RSH/C3", "6208 P63", "HR 32008 XJ")]
     ['NU308 C4', '6205 C3', '6208 C3', '32008']
-    >>> [read_designation(text).text for text in ("B7005-C-T-P4S", "7014 CD/HCP4A", "HCB7014-E-T-P4S")]
-    ['7005C', '7014C HC', '7014AC HC']
+    >>> [read_designation(text).text for text in ("B7005-C-T-P4S", "7014 CD/HCP4A", "HCB7014-E-T-P4S", "S 61914 C TA")]
+    ['7005C', '7014C HC', '7014AC HC', '71914C']
     >>> read_designation("22208")
     """
-    upper = text.strip().upper()
+    upper = _OF_GMN.sub(r"B7\1\2\3", text.strip().upper())
     if len(upper) > _LONGEST:
         return None
     for row, pattern in _PATTERNS:
@@ -149,16 +156,21 @@ def read_designation(text: str) -> Designation | None:
         if match is None:
             continue
         before, *parts, behind = match.groups()
+        inside = re.sub("[ .-]", "", upper[len(before) : len(upper) - len(behind)])
+        for part in parts:
+            inside = inside.replace(part or "", "", 1)
         first, last = prefix(before, kind) if before else None, suffixes(behind, row.suffixes or kind)
         if last is None or (before and first is None):
             continue
         if kind == ANGULAR:
-            if parts[2] == "E" and before.strip(" -") not in _OF_SPINDLES:
+            others = first is None or first.effect != REFUSED
+            if parts[2] == "E" and before.strip(" -") not in _OF_SPINDLES and others:
                 continue
-            parts[2] = {"E": "AC", "A5": "AC"}.get(parts[2], parts[2])
+            parts[2] = {"E": "AC", "A5": "AC", "AD": "AC"}.get(parts[2], parts[2])
         if kind in BALLS:  # names of makers, and those of ISO
             parts[0] = _ISO_NAMES.get(parts[0], parts[0])
-        affixes = (*([first] if first else []), *last)
+        within = [Affix(inside, _WITHIN[inside], "")] if inside in _WITHIN else []
+        affixes = (*([first] if first else []), *within, *last)
         named = [one.text for one in affixes if one.effect == CLEARANCE]
         classes = dict.fromkeys(
             "C" + "".join(found.groups("")) if (found := _CLASS.fullmatch(one)) else one for one in named

@@ -37,6 +37,7 @@ from collections.abc import Callable
 from scipy.optimize import brentq
 
 from ehdmaps.errors import InputError, short
+from ehdmaps.physics.designations.affixes import PAIR
 from ehdmaps.physics.designations.clearance import delivered, own_range, refuse_affixes
 from ehdmaps.physics.designations.families import not_known
 from ehdmaps.physics.designations.reader import DOUBLE_ROW, FOUR_POINT, THRUST, Designation, bore_code, table
@@ -145,6 +146,7 @@ def _matched_set(designation: str, found: Designation, one: BallGeometry, width:
     sets = [name for name in SETS if found.matched.startswith(name)]
     name = max(sets, key=len, default="")
     preload, level = 0.0, found.matched.removeprefix(name)
+    level = level or "".join(one.text for one in found.affixes if one.effect == PAIR)
     if level:
         rows = table("balls")["preload"].get(series, {}).get(suffix, [])
         row = next((row for row in rows if bore_code(row[0]) == code), None)

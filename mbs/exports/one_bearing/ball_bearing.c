@@ -15,7 +15,7 @@ int ehd_bearing_make(ehd_bearing *bearing, double clearance, int mirrored) {
     bearing->clearance = clearance;
     bearing->mirrored = mirrored != 0;
     bearing->axial = (mirrored ? -1.0 : 1.0) * GROOVE_DISTANCE * sin(EHD_CONTACT_ANGLE);
-    bearing->radial = apart - 0.5 * (clearance - axial);
+    bearing->radial = THRUST ? 0.0 : apart - 0.5 * (clearance - axial);
     /* the inner groove's centre at the free contact angle */
     bearing->arm = 0.5 * EHD_PITCH_DIAMETER + INNER_ARM * least(bearing->radial / GROOVE_DISTANCE, 1.0);
     bearing->most_travel = MOST_TRAVEL;

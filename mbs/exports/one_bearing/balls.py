@@ -37,6 +37,7 @@ def _private(force: BallForce) -> str:
         + define("GYROSCOPIC", drive.gyroscopic, "the same of the traction of its gyroscopic moment [kg m]")
         + define("BALL_AXIS", int(drive.axis), f"axis of a ball: {geometry.hypothesis}")
         + define("SPHERE", int(geometry.spherical), "1: the outer raceway is a sphere about the middle, tilts are free")
+        + define("THRUST", int(geometry.thrust), "1: the grooves face each other along the axis, without a clearance")
         + define("MOST_TRAVEL", geometry.most_travel, "largest accepted displacement [m]")
         + define("AXIAL_PLAY", int(geometry.axial_play), "1: the clearance is axial, and shifts the rows")
         + "/* rows: way along x, place [m], shift of the inner groove [m], other contacts */\n"
