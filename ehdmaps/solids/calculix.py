@@ -56,7 +56,7 @@ def version(purpose: str) -> str:
     return match[1] if match else "unknown"
 
 
-def run_deck(text: str, folder: Path, job: str, purpose: str) -> None:
+def run_deck(text: str, folder: Path, job: str, purpose: str, longest: float = LONGEST_RUN) -> None:
     """Run CalculiX on a deck in a folder; its files JOB.dat, JOB.frd and so on are there after.
 
     Parameters
@@ -69,6 +69,8 @@ def run_deck(text: str, folder: Path, job: str, purpose: str) -> None:
         Name of the files without ending.
     purpose : str
         What needs CalculiX, for the message.
+    longest : float
+        Seconds after which it is stopped.
 
     Raises
     ------
@@ -88,15 +90,13 @@ def run_deck(text: str, folder: Path, job: str, purpose: str) -> None:
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=subprocess.STDOUT,
-                timeout=LONGEST_RUN,
+                timeout=longest,
                 check=False,
                 # Threads pay for larger models only, and change the last digits.
                 env={**os.environ, "OMP_NUM_THREADS": "1"},
             )
     except subprocess.TimeoutExpired as error:
-        raise AnalysisError(
-            f"CalculiX: not done after {LONGEST_RUN:.0f} s; take larger elements; {_tail(log)}"
-        ) from error
+        raise AnalysisError(f"CalculiX: not done after {longest:.0f} s; take larger elements; {_tail(log)}") from error
     except OSError as error:
         raise AnalysisError(f"CalculiX: {command[0]} cannot be started: {error.strerror}") from error
     if result.returncode != 0:
