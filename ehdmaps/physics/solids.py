@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from ehdmaps.errors import Problems
 
@@ -63,6 +64,20 @@ STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.3, density=7850.0)
 
 SILICON_NITRIDE = Material(310e9, 0.26, 3200.0, conductivity=30.0, heat_capacity=800.0)
 """Silicon nitride of balls: usual values."""
+
+
+MATERIALS = MappingProxyType(
+    {
+        "steel": STEEL,
+        "cast iron": Material(110e9, 0.25, 7200.0),
+        "ductile iron": Material(170e9, 0.275, 7100.0),
+        "aluminium": Material(70e9, 0.33, 2700.0),
+        "magnesium": Material(45e9, 0.35, 1800.0),
+        "titanium": Material(114e9, 0.34, 4430.0),
+        "copper": Material(120e9, 0.34, 8930.0),
+    }
+)
+"""Materials of machines by name, with usual values."""
 
 
 def reduced_modulus(first: Material, second: Material) -> float:

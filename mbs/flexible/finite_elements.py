@@ -14,6 +14,7 @@ Nodes that are fixed are not in the matrices: their share of the mass, and of th
 
 from __future__ import annotations
 
+import importlib.util
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -22,9 +23,25 @@ from scipy import sparse
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import Problems
-from mbs.flexible.factors import most_freedoms, too_many
 from mbs.flexible.plan import UNIT_SYSTEMS
 from mbs.model.body import lever_arm
+
+SMALL, LARGE = 300_000, 1_200_000
+"""Degrees of freedom that SuperLU factorises, and PARDISO."""
+
+COARSER = "take a coarser mesh"
+
+
+def most_freedoms() -> int:
+    """Degrees of freedom that are taken: more where PARDISO is installed."""
+    return LARGE if importlib.util.find_spec("pypardiso") else SMALL
+
+
+def too_many() -> str:
+    """Words on what is allowed, and what to do."""
+    beyond = "" if most_freedoms() > SMALL else f'; or pip install "ehdmaps[large]", for {LARGE}'
+    return f"allowed: at most {most_freedoms()}; {COARSER}{beyond}"
+
 
 _OVERREACH = 1.0 + 1e-6
 """Square of an entry over the product of its diagonals, which is at most 1 but for rounding."""

@@ -27,8 +27,7 @@ from ehdmaps.arrays import IntArray
 from ehdmaps.errors import InputError
 from ehdmaps.inputs import first_bytes
 from ehdmaps.units import short
-from mbs.flexible.factors import most_freedoms, too_many
-from mbs.flexible.finite_elements import FiniteElementModel, NodePositions, named
+from mbs.flexible.finite_elements import FiniteElementModel, NodePositions, most_freedoms, named, too_many
 from mbs.flexible.number_table import NumberTable, check_file, check_last_line, read_numbers
 from mbs.flexible.plan import UNIT_SYSTEMS
 from mbs.flexible.rigid_motion import check_rigid_motion

@@ -32,8 +32,7 @@ from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError, Problems
 from ehdmaps.units import short
 from mbs.flexible.apart import run_apart
-from mbs.flexible.factors import most_freedoms, too_many
-from mbs.flexible.finite_elements import ASYMMETRY, FiniteElementModel, NodePositions, named
+from mbs.flexible.finite_elements import ASYMMETRY, FiniteElementModel, NodePositions, most_freedoms, named, too_many
 from mbs.flexible.matrix_files import Labelled, assemble_model
 from mbs.flexible.number_table import check_file, check_last_line
 

@@ -27,22 +27,14 @@ import numpy as np
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError, Problems
 from ehdmaps.inputs import read_text
-from ehdmaps.physics.solids import STEEL, Material
+from ehdmaps.physics.solids import Material
 from ehdmaps.solids.calculix import LONGEST_RUN, run_deck
 from mbs.flexible.apart import run_apart
-from mbs.flexible.factors import most_freedoms, too_many
+from mbs.flexible.finite_elements import most_freedoms, too_many
 from mbs.flexible.number_table import LONGEST_FILE, check_file
 
 MESHES = (".msh", ".inp", ".bdf", ".nas", ".fem", ".med")
 """Endings of solid meshes."""
-
-MATERIALS: Mapping[str, Material] = {
-    "steel": STEEL,
-    "cast iron": Material(110e9, 0.25, 7200.0),
-    "ductile iron": Material(170e9, 0.275, 7100.0),
-    "aluminium": Material(70e9, 0.33, 2700.0),
-}
-"""Materials by name, with usual values."""
 
 UNITS: Mapping[str, float] = {"m": 1.0, "mm": 1e-3}
 """Units of lengths of a mesh [m]."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Callable
 from importlib import resources
@@ -12,7 +13,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics.solids import STEEL
+from ehdmaps.physics.solids import MATERIALS, Material
 from ehdmaps.units import LENGTH, Display, short
 from mbs.model.body import FREEDOMS, Inertia
 from mbs.model.elements import GROUND
@@ -45,17 +46,30 @@ def cylinder(table: Table) -> Inertia | None:
     end = table.quantity("to", "m", -100.0, 100.0, LENGTH, required=True)
     diameter = table.quantity("diameter", "m", 1e-5, 100.0, LENGTH, required=True)
     bore = table.quantity("bore", "m", 0.0, 100.0, LENGTH)
-    density = table.quantity("density", "kg/m^3", 100.0, 25000.0, Display("kg/m^3"))
+    density = material(table).density
     table.close()
     if begin is None or end is None or diameter is None:
         return None
     return solid_cylinder(table, begin, end, diameter, bore, density)
 
 
+def material(table: Table) -> Material:
+    """Read the material of a part, by its name, and its density where that is stated; steel if left out.
+
+    Parameters
+    ----------
+    table : Table
+        The table of the part.
+    """
+    found = MATERIALS[table.choice("material", tuple(MATERIALS)) or "steel"]
+    density = table.quantity("density", "kg/m^3", 100.0, 25000.0, Display("kg/m^3"))
+    return found if density is None else dataclasses.replace(found, density=density)
+
+
 def solid_cylinder(
-    table: Table, begin: float, end: float, diameter: float, bore: float | None, density: float | None
+    table: Table, begin: float, end: float, diameter: float, bore: float | None, density: float
 ) -> Inertia | None:
-    """Inertia of a cylinder from its ends and diameters [m] and density [kg/m3]; steel without holes if left out.
+    """Inertia of a cylinder from its ends and diameters [m] and density [kg/m3]; without holes if left out.
 
     Parameters
     ----------
@@ -63,12 +77,14 @@ def solid_cylinder(
         Takes what is wrong.
     begin, end, diameter : float
         Dimensions [m].
-    bore, density : float or None
-        [m], [kg/m3].
+    bore : float or None
+        [m].
+    density : float
+        [kg/m3].
     """
     return built(
         table,
-        lambda: Inertia.cylinder(begin, end, diameter, bore or 0.0, STEEL.density if density is None else density),
+        lambda: Inertia.cylinder(begin, end, diameter, bore or 0.0, density),
     )
 
 

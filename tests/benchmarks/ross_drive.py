@@ -6,7 +6,7 @@ Run twice, in one folder for what passes between both environments:
     python -m tests.benchmarks.ross_drive compare FOLDER                in an environment of ROSS: prints both
 
 The scene has one shaft; outer rings are held across the axis. ROSS has y and z of the bearings (2 x 2), mbs their tilts
-too: that is part of the differences. Frequencies are those of the lowest two bending modes, which a shaft in two planes has
+too: that is part of the differences. Frequencies are those of the lowest two modes that bend, which a shaft has
 backward and forward.
 """
 

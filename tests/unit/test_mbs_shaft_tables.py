@@ -472,3 +472,22 @@ def test_every_analysis_runs_on_a_new_scene(tmp_path, monkeypatch, capsys):
         assert cli.main([name, *subject, *rest]) in (0, 1), command
         said = capsys.readouterr()
         assert "no result" not in said.out and "error" not in said.err, command
+
+
+def test_materials_by_name():
+    """Those of the table, and a density that is stated beside."""
+    parts = (
+        ('material = "aluminium"', 2700.0),
+        ('material = "cast iron", density = "7300 kg/m^3"', 7300.0),
+        ("", 7850.0),
+    )
+    for words, density in parts:
+        text = SHORT.replace('width = "24 mm", bore', f'width = "24 mm", {words}{", " if words else ""}bore')
+        text = text.replace('length = "50 mm", diameter', f'length = "50 mm", {words}{", " if words else ""}diameter')
+        (shaft,) = parse_scene(text, "a", "a").bodies
+        volume = math.pi / 4.0 * (0.18**2 - 0.062**2) * 0.024
+        assert shaft.discs[0].inertia.mass == pytest.approx(density * volume, rel=1e-12)  # round-off
+        assert shaft.sections[3].density == density
+        assert shaft.sections[3].youngs_modulus == {2700.0: 70e9, 7300.0: 110e9}.get(density, 210e9)
+    with pytest.raises(InputError, match=r"material: got 'wood'; allowed: .*aluminium"):
+        parse_scene(SHORT.replace('width = "24 mm"', 'width = "24 mm", material = "wood"'), "a", "a")

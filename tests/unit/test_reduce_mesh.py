@@ -10,11 +10,11 @@ import pytest
 
 import mbs.cli
 from ehdmaps.errors import InputError
-from ehdmaps.physics.solids import Material
+from ehdmaps.physics.solids import MATERIALS, Material
 from ehdmaps.solids.calculix import run_deck
 from mbs.flexible.matrix_files import read_dofs, read_triplets
 from mbs.flexible.reduced_file import read_reduced
-from mbs.flexible.solid_mesh import MATERIALS, assembled, materials_of, read_solid, solid_lines
+from mbs.flexible.solid_mesh import assembled, materials_of, read_solid, solid_lines
 from tests.cases.programs import needed
 
 SIZE = np.array([60.0, 40.0, 20.0])

@@ -14,7 +14,7 @@ from ehdmaps.errors import InputError, Problems, closest, short
 from ehdmaps.extras import lacking
 from ehdmaps.jobs.make.status import duration, tell
 from ehdmaps.outputs import Output, output_problems
-from ehdmaps.physics.solids import Material
+from ehdmaps.physics.solids import MATERIALS, Material
 from ehdmaps.solids.calculix import program
 from ehdmaps.units import quantity
 from mbs.commands.common import read_option
@@ -33,7 +33,7 @@ from mbs.flexible.plan import (
 )
 from mbs.flexible.reduced_body import ReducedBody
 from mbs.flexible.reduced_file import REDUCED
-from mbs.flexible.solid_mesh import MATERIALS, UNITS, SolidMesh, assembled, materials_of, read_solid
+from mbs.flexible.solid_mesh import UNITS, SolidMesh, assembled, materials_of, read_solid
 from mbs.scene.fields import HERTZ
 
 SEAT = "'NAME = X Y Z mm, DIAMETER mm x WIDTH mm, AXIS', or NAME=GROUP"

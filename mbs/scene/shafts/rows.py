@@ -11,8 +11,7 @@ from pathlib import Path
 from ehdmaps.errors import InputError, Problems
 from ehdmaps.inputs import decimal_points, read_text, separator
 from ehdmaps.jobs.table import Table
-from ehdmaps.physics.solids import STEEL
-from ehdmaps.units import LENGTH, PRESSURE, Display, short
+from ehdmaps.units import LENGTH, PRESSURE, short
 from mbs.flexible.shaft_parts import MOST_PARTS, Section
 from mbs.scene import fields
 from mbs.scene.fields import LONGEST_FILE
@@ -241,7 +240,7 @@ def _section(table: Table, reached: float) -> tuple[Section | None, float | None
     end_bore = table.quantity("end_bore", "m", 0.0, 100.0, LENGTH)
     modulus = table.quantity("youngs_modulus", "Pa", 0.0, 2e12, PRESSURE)
     ratio = table.number("poisson_ratio", -0.999, 0.499)
-    density = table.quantity("density", "kg/m^3", 100.0, 25000.0, Display("kg/m^3"))
+    material = fields.material(table)
     table.close(("length", "from", "to"))
     onward = end if chained else None
     if begin is None or end is None or diameter is None:
@@ -253,9 +252,9 @@ def _section(table: Table, reached: float) -> tuple[Section | None, float | None
             *ends,
             diameter,
             bore or 0.0,
-            STEEL.youngs_modulus if modulus is None else modulus,
-            STEEL.poisson_ratio if ratio is None else ratio,
-            STEEL.density if density is None else density,
+            material.youngs_modulus if modulus is None else modulus,
+            material.poisson_ratio if ratio is None else ratio,
+            material.density,
             end_diameter,
             end_bore,
         ),

@@ -165,7 +165,7 @@ def _middle_cylinder(table: Table) -> Inertia | None:
     width = table.quantity("width", "m", 1e-6, 100.0, LENGTH, required=True)
     diameter = table.quantity("diameter", "m", 1e-5, 100.0, LENGTH, required=True)
     bore = table.quantity("bore", "m", 0.0, 100.0, LENGTH)
-    density = table.quantity("density", "kg/m^3", 100.0, 25000.0, Display("kg/m^3"))
+    density = fields.material(table).density
     table.close(("mass", "polar_inertia", "transverse_inertia"))
     if width is None or diameter is None:
         return None
