@@ -250,18 +250,14 @@ def _entry(series: str, code: str, suffix: str) -> BallCatalogue | None:
 def _filled(name: str, rating: float, factor: float | None, pitch: float, section: float) -> tuple[int, float]:
     """Number and diameter of the balls of a deep groove bearing."""
     found: list[tuple[float, int, float]] = []
-    thin = factor is not None and factor > max(FACTORS)
+    thin = factor is not None and factor > max(FACTORS)  # rated by the inner contact alone
+    least, most = (rating_of_ball(part * section, pitch, 0.0, of_inner=thin) for part in (0.2, 0.95))
     for balls in range(5, 40):
-        if rating_of_ball(0.2 * section, pitch, 0.0) < rating / balls < rating_of_ball(0.95 * section, pitch, 0.0):
-            # of thin sections catalogues have more than ISO 76, and ratings by it: Z Dw^2 is C0 over their own factor
-            diameter = (
-                _MM * math.sqrt(rating / (balls * float(factor or 0.0)))
-                if thin
-                else ball_diameter(name, rating / balls, pitch, 0.0, section)
-            )
+        if least < rating / balls < most:
+            diameter = ball_diameter(name, rating / balls, pitch, 0.0, section, of_inner=thin)
             arc = (balls - 1) * 2.0 * math.asin(diameter / pitch)
             doubt = ((arc - FILLING_ARC) / _ARC_ERROR) ** 2
-            if factor is not None and not thin:
-                doubt += ((static_factor(diameter / pitch) - factor) / _FACTOR_ERROR) ** 2
+            if factor is not None:
+                doubt += ((static_factor(diameter / pitch, of_inner=thin) - factor) / _FACTOR_ERROR) ** 2
             found.append((doubt, balls, diameter))
     return min(found)[1:]

@@ -31,14 +31,26 @@ FACTORS: list[float] = table("balls")["factors"]
 _MM = 1e-3
 
 
-def static_factor(gamma: float) -> float:
+def static_factor(gamma: float, *, of_inner: bool = False) -> float:
     """Factor f0 of ISO 76 for radial and angular contact ball bearings, by Dw cos(alpha)/d_m, 0 to 0.4.
+
+    Below 0.09 the outer contact decides, with a groove of 0.53. That of a tighter one does not: the factor goes on as
+    that of the inner contact, by Hertz.
+
+    Parameters
+    ----------
+    gamma : float
+        Dw cos(alpha)/d_m.
+    of_inner : bool
+        Whether the inner contact decides everywhere, as in NSK's catalogue.
 
     Examples
     --------
-    >>> static_factor(0.2)
-    14.0
+    >>> static_factor(0.2), static_factor(0.06), round(static_factor(0.06, of_inner=True), 2)
+    (14.0, 15.9, 17.42)
     """
+    if of_inner and gamma < _BRANCH:
+        return static_factor(_BRANCH) + _INNER_SLOPE * (_BRANCH - gamma)
     place = 100.0 * min(max(gamma, 0.0), 0.4)
     low = min(int(place), len(FACTORS) - 2)
     return FACTORS[low] + (place - low) * (FACTORS[low + 1] - FACTORS[low])
@@ -85,7 +97,7 @@ def ball_dynamic_rating(geometry: BallGeometry, quality: float = 1.3) -> float:
     )
 
 
-def rating_of_ball(diameter: float, pitch: float, angle: float) -> float:
+def rating_of_ball(diameter: float, pitch: float, angle: float, *, of_inner: bool = False) -> float:
     """Static rating of a ball [N].
 
     Parameters
@@ -94,12 +106,16 @@ def rating_of_ball(diameter: float, pitch: float, angle: float) -> float:
         Dw and d_m [m].
     angle : float
         Contact angle [rad].
+    of_inner : bool
+        See `static_factor`.
     """
     cosine = math.cos(angle)
-    return static_factor(diameter * cosine / pitch) * (diameter / _MM) ** 2 * cosine
+    return static_factor(diameter * cosine / pitch, of_inner=of_inner) * (diameter / _MM) ** 2 * cosine
 
 
-def ball_diameter(name: str, rating: float, pitch: float, angle: float, section: float) -> float:
+def ball_diameter(
+    name: str, rating: float, pitch: float, angle: float, section: float, *, of_inner: bool = False
+) -> float:
     """Diameter of the balls by the rating of one of them [m].
 
     Parameters
@@ -110,6 +126,8 @@ def ball_diameter(name: str, rating: float, pitch: float, angle: float, section:
         Static rating of a ball [N].
     pitch, angle, section : float
         d_m [m], contact angle [rad], height of the section of both rings [m].
+    of_inner : bool
+        See `static_factor`.
 
     Raises
     ------
@@ -117,19 +135,27 @@ def ball_diameter(name: str, rating: float, pitch: float, angle: float, section:
         If no balls fit.
     """
     low, high = 0.2 * section, 0.95 * section
-    if not rating_of_ball(low, pitch, angle) < rating < rating_of_ball(high, pitch, angle):
+
+    def found(diameter: float) -> float:
+        return rating_of_ball(diameter, pitch, angle, of_inner=of_inner)
+
+    if not found(low) < rating < found(high):
         raise InputError(
             f"ball bearing estimate of {name}: no balls fit its static rating between {low / _MM:.3g} and "
             f"{high / _MM:.3g} mm; allowed: C0, not C, in N"
         )
     for _ in range(60):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if rating_of_ball(middle, pitch, angle) < rating else (low, middle)
+        low, high = (middle, high) if found(middle) < rating else (low, middle)
     return 0.5 * (low + high)
 
 
 THRUST_FACTOR, _THRUST_DYNAMIC = 61.6, 146.1
 """Factors of thrust ball bearings: f0 of ISO 76, and f_c of ISO 281 over (Dw/d_m)^0.3."""
+
+_BRANCH, _INNER_SLOPE = 0.1, 25.6
+"""Dw cos(alpha)/d_m from which on the inner contact decides, and the slope of its f0, of Hertz' pressure of 4.2 GPa in
+a groove of 0.52."""
 
 _GROOVE = 0.52
 """Conformity of both grooves with which ISO 281 rates."""
