@@ -33,7 +33,7 @@ def _place_bearing(arguments: argparse.Namespace) -> None:
 
     name = next(name for name in ("jobs", "job", "map") if name in arguments)
     given = getattr(arguments, name)
-    needed = not getattr(arguments, "list", False)
+    needed = not (getattr(arguments, "list", False) or getattr(arguments, "catalogue", False))
     source = bearing_source(arguments.bearing, arguments.oil, given or None, needed)
     if source is not None:
         setattr(arguments, name, [source] if name == "jobs" else source)

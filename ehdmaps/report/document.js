@@ -4,12 +4,16 @@ document.documentElement.classList.add("js");
 for (const figure of document.querySelectorAll("figure.chart")) {
   const block = figure.querySelector("script");
   if (!block) continue;
-  const data = JSON.parse(block.textContent);
+  let data = JSON.parse(block.textContent);
   const svg = figure.querySelector("svg");
   const line = svg.querySelector(".line");
   const at = figure.querySelector(".cursor output");
   const values = figure.querySelectorAll(".legend output");
   const { values: places, pixels } = data.x;
+  // a page that draws its curves anew writes the block anew
+  new MutationObserver(() => {
+    data = JSON.parse(block.textContent);
+  }).observe(block, { childList: true });
   let index = 0;
   const text = (value) => (value === null ? "none" : String(Number(value.toPrecision(4))));
   const show = (next) => {

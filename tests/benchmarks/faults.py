@@ -33,9 +33,9 @@ name = "NU308"
 [lubricant]
 name = "FVA3"
 [grid]
-load = { from = "1 N/mm", to = "500 N/mm", points = 10, spacing = "log" }
-entrainment_speed = { from = "0.2 m/s", to = "8 m/s", points = 8, spacing = "log" }
-temperature = ["40 degC", "60 degC", "80 degC", "100 degC"]
+load = { from = "1 N/mm", to = "500 N/mm", points = 8, spacing = "log" }
+entrainment_speed = { from = "0.2 m/s", to = "8 m/s", points = 6, spacing = "log" }
+temperature = ["40 degC", "70 degC", "100 degC"]
 [solver]
 name = "reynolds"
 structural_law = "iso16281"

@@ -117,6 +117,7 @@ ALLOWED = {
         "ehdmaps.choices",
         "ehdmaps.command_table",
         "ehdmaps.compiling",
+        "ehdmaps.electrics",
         "ehdmaps.provenance",
         "ehdmaps.workers",
         "ehdmaps.errors",
