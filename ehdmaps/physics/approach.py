@@ -338,17 +338,6 @@ def shipped_names() -> tuple[str, ...]:
     return tuple(sorted(_shipped()))
 
 
-def shipped_record(name: str) -> Mapping[str, Any]:
-    """Everything that `ehdmaps solids` wrote about a bearing.
-
-    Parameters
-    ----------
-    name : str
-        One of `shipped_names`.
-    """
-    return _shipped()[name]
-
-
 def shipped_approaches(geometry: Mapping[str, Any], material: Material) -> dict[str, float] | None:
     """Approaches of both contacts at `FE_LOAD` by their names [m]; None where none come with the package.
 

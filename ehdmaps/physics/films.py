@@ -322,7 +322,8 @@ def dietl_damping(
 
 
 RIGID_ROLLING_CONSTANT = 4.159245
-"""F/sqrt(eta u w) of the rigid isoviscous rolling film with the Reynolds exit; see `rigid_rolling_force`."""
+"""F/sqrt(eta u w) of the rigid isoviscous rolling film with the Reynolds exit, the limit of light loads, whatever the
+radius: w = 4.895 eta u R/h and F = 9.202 eta u sqrt(R/h), both walls together."""
 
 
 def film_times_rise(film: FloatArray, pressure: FloatArray) -> float:
@@ -372,26 +373,3 @@ def rolling_force_of_inlet(distance: float, film: float, flow: float, wedge: flo
     once = 2.0 * radius / distance * (1.0 - 2.0 * least * radius / (3.0 * distance**2))
     twice = 4.0 * radius**2 / (3.0 * distance**3)
     return wedge * (once - flow * twice)
-
-
-def rigid_rolling_force(load: Values, speed: float, viscosity: float) -> Values:
-    """Rolling force of a rigid isoviscous film, F = 4.159 sqrt(eta u w) [N/m], both walls together.
-
-    The limit of light loads, whatever the radius: w = 4.895 eta u R/h and F = 9.202 eta u sqrt(R/h), with the free exit
-    of Reynolds' condition.
-
-    Parameters
-    ----------
-    load : float or array
-        w [N/m].
-    speed : float
-        Entrainment speed u [m/s].
-    viscosity : float
-        eta [Pa s].
-
-    Examples
-    --------
-    >>> round(rigid_rolling_force(100.0, speed=2.0, viscosity=0.1), 3)
-    18.601
-    """
-    return as_given(RIGID_ROLLING_CONSTANT * np.sqrt(viscosity * speed * np.asarray(load)), load)

@@ -16,7 +16,6 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.kernel.library import checked, function
 from ehdmaps.kernel.record import Record, numbers
-from ehdmaps.physics.contact import Force
 
 TOUCH = 1e-7
 """Compression over which contact becomes whole [m]."""
@@ -49,35 +48,14 @@ class MeshData(Record):
 
 @functools.cache
 def _functions() -> tuple[Callable[..., Any], ...]:
-    """Functions of the library for a flank; for forces, powers and energy of a mesh."""
+    """Functions of the library for forces, powers and energy of a mesh."""
     checked(MeshData, "ehd_gear_mesh")
     pointer, number = ctypes.c_void_p, ctypes.c_double
     return (
-        function("ehd_gear_flank", number, number, number, number, pointer, result=None),
         function("ehd_gear_force", pointer, number, number, pointer, pointer, pointer, result=None),
         function("ehd_gear_powers", pointer, number, number, pointer, pointer, pointer, result=None),
         function("ehd_gear_energy", pointer, number, pointer, result=number),
     )
-
-
-def flank_force(compression: float, rate: float, stiffness: float, damping: float) -> Force:
-    """Force of a flank, and its derivatives by compression and by rate.
-
-    Parameters
-    ----------
-    compression : float
-        Compression of the mesh spring [m]; no force below 0.
-    rate : float
-        Rate of the compression [m/s].
-    stiffness : float
-        [N/m].
-    damping : float
-        [N s/m].
-    """
-    out = np.empty(3)
-    _functions()[0](compression, rate, stiffness, damping, out.ctypes.data)
-    force, slope, by_rate = out.tolist()
-    return force, slope, by_rate
 
 
 def mesh_force(mesh: MeshData, angle: float, speed: float, motion: FloatArray, rate: FloatArray) -> FloatArray:
@@ -98,7 +76,7 @@ def mesh_force(mesh: MeshData, angle: float, speed: float, motion: FloatArray, r
         Force, derivative by compression, derivative by rate, for each flank: [N], [N/m], [N s/m].
     """
     x, v, out = _pair(motion), _pair(rate), np.empty((2, 3))
-    _functions()[1](mesh.address, angle, speed, x.ctypes.data, v.ctypes.data, out.ctypes.data)
+    _functions()[0](mesh.address, angle, speed, x.ctypes.data, v.ctypes.data, out.ctypes.data)
     return out
 
 
@@ -113,7 +91,7 @@ def mesh_powers(
         What `mesh_force` takes.
     """
     x, v, out = _pair(motion), _pair(rate), np.empty(2)
-    _functions()[2](mesh.address, angle, speed, x.ctypes.data, v.ctypes.data, out.ctypes.data)
+    _functions()[1](mesh.address, angle, speed, x.ctypes.data, v.ctypes.data, out.ctypes.data)
     dissipated, driven = out.tolist()
     return dissipated, driven
 
@@ -127,7 +105,7 @@ def mesh_energy(mesh: MeshData, angle: float, motion: FloatArray) -> float:
         What `mesh_force` takes.
     """
     x = _pair(motion)
-    return float(_functions()[3](mesh.address, angle, x.ctypes.data))
+    return float(_functions()[2](mesh.address, angle, x.ctypes.data))
 
 
 def _pair(values: FloatArray) -> FloatArray:

@@ -93,14 +93,13 @@ class StepperData(Record):
 
 @functools.cache
 def _functions() -> tuple[Callable[..., Any], ...]:
-    """Functions of the library: motion of the ports, forces out of balance, Newton's change, elimination."""
+    """Functions of the library: motion of the ports, forces out of balance, Newton's change."""
     checked(StepperData, "ehd_stepper_data")
     pointer, number = ctypes.c_void_p, ctypes.c_double
     return (
         function("ehd_port_motion", pointer, pointer, pointer, pointer, result=None),
         function("ehd_unbalanced", *[pointer] * 8, result=None),
         function("ehd_correction", pointer, number, number, pointer),
-        function("ehd_eliminate", ctypes.c_int64, pointer, pointer),
     )
 
 
@@ -158,19 +157,6 @@ def correction(data: StepperData, by_q: float, by_v: float, force: FloatArray) -
     """
     change = force.copy()
     return change if _functions()[2](data.address, by_q, by_v, _at(change)) else None
-
-
-def eliminate(matrix: FloatArray, right: FloatArray) -> bool:
-    """Gaussian elimination with partial pivoting, in place; False if singular or not finite.
-
-    Parameters
-    ----------
-    matrix : array, shape (n, n)
-        The matrix, overwritten.
-    right : array, shape (n,)
-        Right-hand side; the solution afterwards.
-    """
-    return bool(_functions()[3](right.size, _at(matrix), _at(right)))
 
 
 def _at(array: FloatArray) -> int:

@@ -3,18 +3,21 @@
 import json
 import re
 import tomllib
+from importlib import resources
 
 import pytest
 
 from ehdmaps.jobs import cli
 from ehdmaps.jobs.commands import solids
 from ehdmaps.jobs.reader import parse_job
-from ehdmaps.physics.approach import shipped_record
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.solids import STEEL
 from tests.cases.jobs import map_job
 
 TEXT = map_job('["1 N/mm", "10 N/mm"]', '["0.5 m/s"]', '["40 degC"]')
+
+
+SHIPPED = json.loads((resources.files("ehdmaps.physics") / "shipped" / "NU308.json").read_text("utf-8"))
 
 
 @pytest.fixture
@@ -24,7 +27,7 @@ def solved(monkeypatch):
 
     def found(bearing, sections, *, meshes, contact, tell):
         asked.append((sections.roller_bore, meshes, contact))
-        return {key: value for key, value in shipped_record("NU308").items() if key not in ("program", "command")}
+        return {key: value for key, value in SHIPPED.items() if key not in ("program", "command")}
 
     monkeypatch.setattr(solids, "bearing_record", found)
     return asked
@@ -59,7 +62,7 @@ def test_what_is_printed_is_what_a_job_takes(here, solved, capsys):
     assert tomllib.loads(table)["solids"]["law"] == "fe"
     law = re.search(r'structural_law = "\w+"\n', TEXT)
     job = parse_job(TEXT.replace(law[0], "") + table, "mine", "mine.toml")
-    known = shipped_record("NU308")["contacts"]
+    known = SHIPPED["contacts"]
     for contact in job.contacts:
         assert contact.structural_law == "fe"
         assert contact.fe_approach == pytest.approx(known[contact.name]["fe_approach"], rel=1e-6)  # digits

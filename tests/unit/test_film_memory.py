@@ -13,9 +13,10 @@ from scipy.optimize import brentq
 
 from ehdmaps.errors import InputError, OutsideMapError
 from ehdmaps.maps.kernels.memory import FilmState
-from ehdmaps.maps.kernels.memory_table import approach_at, equilibrium_at, rate_of
+from ehdmaps.maps.kernels.memory_table import equilibrium_at
 from ehdmaps.maps.law import ContactLaw
 from tests.cases import memory_text
+from tests.cases.c_functions import approach_at, rate_of
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD, ValleyField
 
 WARM = 330.0

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import InputError
-from ehdmaps.maps.kernels.memory_table import approach_at
 from ehdmaps.maps.law import ContactLaw
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
@@ -20,6 +19,7 @@ from mbs.bearings.roller_element import RollerElement
 from mbs.linearised.dynamic import TOLERANCE, film_states, together
 from mbs.model.elements import Operation
 from mbs.model.relaxation import Relaxation
+from tests.cases.c_functions import approach_at
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD
 
 BEARING = Bearing.named("NU308", clearance=20e-6, slices=7)

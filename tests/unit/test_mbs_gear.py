@@ -14,7 +14,7 @@ import pytest
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
 from mbs.gears.gear import gear_mesh
-from mbs.gears.gear_kernel import TOUCH, flank_force
+from mbs.gears.gear_kernel import TOUCH
 from mbs.gears.pair import GearPair, contact_ratio, pair_harmonics
 from mbs.gears.relief import Relief
 from mbs.model.body import Inertia
@@ -22,6 +22,7 @@ from mbs.model.elements import Operation
 from mbs.scene.gears import read_gears, spins_by_teeth
 from mbs.scene.reader import parse_scene
 from mbs.scene.specs import RigidSpec
+from tests.cases.c_functions import flank_force
 
 ALPHA = math.radians(20.0)
 PAIR = GearPair(

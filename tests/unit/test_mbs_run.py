@@ -25,8 +25,9 @@ from mbs.settings import Settings
 from mbs.transient.compiled_run import LinearPart
 from mbs.transient.kinds import kind_of
 from mbs.transient.run import CHUNK, Options, run
-from mbs.transient.stepping import Method, eliminate
+from mbs.transient.stepping import Method
 from tests.cases.bearings import TEMPERATURE, integrate, map_law
+from tests.cases.c_functions import eliminate
 
 REST = SpeedProfile.constant(0.0)
 MASS = Inertia(2.0, 0.01, 0.02)

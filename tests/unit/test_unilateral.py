@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from ehdmaps.physics.contact import Force
 from mbs.bearings.laws import unilateral_forces
-from mbs.gears.gear_kernel import TOUCH, flank_force
+from mbs.gears.gear_kernel import TOUCH
+from tests.cases.c_functions import flank_force
 
 RATES = np.array([-1e3, -3.0, -1.001, -0.999, -0.5, 0.0, 2.0])
 """Both sides of x = -1/2, which is at the rate -1 of the state below [m/s]."""

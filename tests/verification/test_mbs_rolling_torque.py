@@ -10,7 +10,6 @@ import pytest
 from scipy.optimize import brentq
 
 from ehdmaps.maps.emap import open_map
-from ehdmaps.physics.films import rigid_rolling_force
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.solids import STEEL
@@ -114,14 +113,14 @@ def test_at_rest_and_without_rolling_forces(reynolds_map):
 
 OIL = Lubricant.barus(viscosity=0.08, pressure_viscosity=0.0, density=880.0).at(WARM)
 IDLE, U = Bearing.named("NU308", clearance=0.0, slices=1), 4.0
-RIGID_LOAD = 4.894968
-"""w h/(eta u R) of the rigid film; 1e-6 of it is what its digits bound below."""
+RIGID_LOAD, RIGID_FORCE = 4.894968, 4.159245
+"""w h/(eta u R) and F/sqrt(eta u w) of the rigid film; 1e-6 of it is what their digits bound below."""
 
 
 def _rigid(w: float, side: int, speed: float) -> tuple[float, float]:
     """Film [m] and rolling force [N/m] of rigid surfaces under a load [N/m]."""
     radius = IDLE.geometry.contacts(STEEL, "iso16281")[side].radius
-    return RIGID_LOAD * OIL.viscosity * speed * radius / w, rigid_rolling_force(w, speed, OIL.viscosity)
+    return RIGID_LOAD * OIL.viscosity * speed * radius / w, RIGID_FORCE * math.sqrt(OIL.viscosity * speed * w)
 
 
 def _driven(*loads: float, pocket: float | None = None) -> DrivenRollers:

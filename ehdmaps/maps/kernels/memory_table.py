@@ -108,7 +108,7 @@ class MemoryTable:
         return self.numbers[_FIRST_LOAD:].reshape(LOAD_ROWS, _LOAD_CELL)
 
 
-def equilibrium_at(table: MemoryTable, approach: npt.ArrayLike) -> tuple[Any, Any, Any, Any, Any, Any]:
+def equilibrium_at(table: MemoryTable, approach: npt.ArrayLike) -> tuple[Any, ...]:
     """p [N/m], y [m] and G [N s/m2] of films in equilibrium, each with its slope by the approach.
 
     Parameters
@@ -123,50 +123,11 @@ def equilibrium_at(table: MemoryTable, approach: npt.ArrayLike) -> tuple[Any, An
     p, dp, y, dy, G, dG : float or array
         Values and slopes in the shape of the approaches.
     """
-    return tuple(_read("ehd_film_equilibria", table, approach, 6))
-
-
-def approach_at(table: MemoryTable, load: npt.ArrayLike) -> tuple[Any, Any]:
-    """Approach a [m] of loads w >= 0, and da/dw = 1/k_s [m2/N].
-
-    Parameters
-    ----------
-    table : MemoryTable
-        The contact.
-    load : float or array
-        [N/m].
-    """
-    return tuple(_read("ehd_film_stretches", table, load, 2))
-
-
-def rate_of(h: float, last_h: float, change: npt.ArrayLike, last: npt.ArrayLike) -> tuple[Any, Any]:
-    """x = G' [N/m] at the end of a step by the changes of G over it and over the last step, and dx/dG [1/s].
-
-    Backward differences of second order, but where the change falls below two thirds of the last one, at turning
-    points, the share of the last one fades with it. So x has the sign of the change, whatever the step, and rises with
-    it. Steps that are longer than the last one by more than a fifth are taken by backward Euler.
-
-    Parameters
-    ----------
-    h, last_h : float
-        Length of the step, and of the last one [s]; 0 if there was none.
-    change, last : float or array
-        Changes of G over this step and over the last one [N s/m2].
-    """
-    one, other = np.broadcast_arrays(np.asarray(change, dtype=np.float64), np.asarray(last, dtype=np.float64))
-    ends, begins = np.ascontiguousarray(one), np.ascontiguousarray(other)
-    out = np.empty((2, *one.shape))
-    called("ehd_film_squeezes")(h, last_h, one.size, at(ends), at(begins), at(out))
-    return out[0][()], out[1][()]
-
-
-def _read(name: str, table: MemoryTable, places: npt.ArrayLike, count: int) -> list[Any]:
-    """Rows of numbers that a function reads at places, each in their shape."""
-    array = np.asarray(places, dtype=np.float64)
+    array = np.asarray(approach, dtype=np.float64)
     flat = np.ascontiguousarray(array).reshape(-1)
-    out = np.empty((count, flat.size))
-    called(name)(table.address, flat.size, at(flat), at(out))
-    return [row.reshape(array.shape)[()] for row in out]
+    out = np.empty((6, flat.size))
+    called("ehd_film_equilibria")(table.address, flat.size, at(flat), at(out))
+    return tuple(row.reshape(array.shape)[()] for row in out)
 
 
 _POINTER, _NUMBER, _COUNT = ctypes.c_void_p, ctypes.c_double, ctypes.c_int64
