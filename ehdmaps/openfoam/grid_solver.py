@@ -111,12 +111,12 @@ class GridSolver:
         tries: list[tuple[Parameters, ...]] = [(parameters,), (moved,)]
         if start is not None:
             begun = replace(parameters, start=start)
-            # without its temperatures heat comes in steps
+            # without its temperatures it begins with an oil that hardly stiffens, in many stages
             cold = [] if start.temperatures is None else [(replace(begun, start=replace(start, temperatures=None)),)]
             # all stresses start from the thin film of the same grid in any case: whatever that was started from
             thin = parameters.flow == "thin_film"
             through = [(_resized(begun, BETWEEN, BETWEEN), parameters)] if thin else []
-            tries = [(begun,), *cold, *through, *tries[0 if thin else 1 :]]
+            tries = [(begun,), *through, *cold, *tries[0 if thin else 1 :]]
         for attempt in tries:
             try:
                 grid = self._in_turn(attempt, name, with_fields, limit)

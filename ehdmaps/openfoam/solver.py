@@ -48,7 +48,7 @@ LONGEST_INLET, LEAST_LENGTHS = 0.5, 3.0
 INLET_LIMITS = (5.0, 1e5)
 """Least and longest inlet over sqrt(2 h R); the film upstream of it is known in closed form."""
 
-PARAMETER_VERSION = 7
+PARAMETER_VERSION = 8
 """Raised when a change of this package changes numbers: results of another version are not taken over."""
 
 PHYSICS = (ISOTHERMAL, THERMAL)
@@ -150,7 +150,7 @@ class OpenFoamSolver(ContactSolverDefaults):
     slide_to_roll: float = 0.0
     inlet_length: float = 20.0
     tolerance: float = 1e-9
-    max_iterations: int = 40
+    max_iterations: int = 100
     starter: Starter | None = None
     timeout: float = 120.0
     keep_cases: Path | None = None

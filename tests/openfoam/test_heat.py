@@ -228,3 +228,17 @@ def test_a_limiting_stress_and_heat_at_the_highest_pressures() -> None:
     stated = abs(film.film_offset_error) + abs(known.film_offset_error)
     # two ways to write the same equations: what both state, and what inlet and the mean of columns differ by
     assert film.film_offset == pytest.approx(known.film_offset, rel=stated + 3e-3)
+
+
+def test_a_cold_fast_loaded_film_is_found_from_an_oil_that_hardly_stiffens() -> None:
+    """Where the isothermal film has none, the way over stiffening ends at the film to which a slower one leads."""
+    contact = BearingGeometry.named("NU308").contacts(STEEL, "iso16281")[1]
+    solver = OpenFoamSolver(columns=120, physics="thermal", shear="limiting", starter=reynolds_start)
+    point = OperatingPoint(1.585e5, 10.0, 293.15)
+    asked = replace(solver.parameters(contact, OIL, point), columns=120, rows=3)
+    found = openfoam_runs.run(asked)
+    slower = openfoam_runs.run(replace(asked, lower_speed=9.7, upper_speed=9.7, start=found.start))
+    again = openfoam_runs.run(replace(asked, start=slower.start))
+    assert slower.results.film_offset < 0.999 * found.results.film_offset
+    # 1e-9 is the length of the last step of both
+    assert again.results.film_offset == pytest.approx(found.results.film_offset, rel=1e-7)

@@ -19,8 +19,9 @@ static constexpr scalar mostViscosity = 5, leastFilm = 0.4;
 //- Most that one step changes temperatures [T_b]
 static constexpr scalar mostWarmth = 0.08;
 
-//- Defect of the mass flux upstream of rupture that counts as none; that of a cell may be a hundred times as large
-static constexpr scalar mostDefect = 1e-8;
+//- Defect of the mass flux upstream of rupture that counts as none, beside the tolerance of a rough film; that of a cell
+//  may be a hundred times as large
+static constexpr scalar leastDefect = 1e-8;
 
 //- Steps that are cut one after another, and full steps of no length beside balances that are not met (a step by a
 //  tangent that is new may come between, with its noise), before it is given up; and full steps in which none
@@ -30,7 +31,8 @@ static constexpr label mostCuts = 25, mostIdle = 3, mostLost = 15;
 //- Length of a step up to which the law of shear is as good as its tangent
 static constexpr scalar straight = 1e-3;
 
-//- Last change of a wall's temperature over the largest one: a light film warms walls by less than other steps tell
+//- Last change of a wall's temperature over the largest one, beside the tolerance of a rough film: a light film warms
+//  walls by less than other steps tell
 static constexpr scalar sameWarmth = 1e-5;
 
 //- Length of a step that is none
@@ -183,6 +185,7 @@ Foam::newtonResult Foam::newton
     scalar previous = GREAT;
     label backAndForth = 0, cuts = 0, idle = 0, lost = 0;
     scalar shortest = GREAT;
+    const scalar mostDefect = max(leastDefect, controls.tolerance), warmth = max(sameWarmth, controls.tolerance);
     for (label iteration = 1; iteration <= controls.maxIterations; ++iteration)
     {
         slice::unknowns rate;
@@ -230,7 +233,7 @@ Foam::newtonResult Foam::newton
         if (part < 1) next = stepped(s, u, part, change);
         const scalar moved = length(next);
         const bool warm = s.wallSize() == 0
-          || (next.wall - u.wall).cwiseAbs().maxCoeff() <= max(sameWarmth*next.wall.cwiseAbs().maxCoeff(), noLength);
+          || (next.wall - u.wall).cwiseAbs().maxCoeff() <= max(warmth*next.wall.cwiseAbs().maxCoeff(), noLength);
         Eigen::Index most = 0;
         (next.column - u.column).cwiseAbs().maxCoeff(&most);
         const bool edge = crossed(s, u, next);

@@ -13,17 +13,16 @@
 namespace Foam
 {
 
-/*-  Where the law of shear is not met at once: from a Newtonian film, whose
-     bounds of stress fall from so many times as high, by a ratio that shrinks
-     where a stage fails; stages before the last are solved roughly
-*/
-static constexpr scalar firstFactor = 64, firstRatio = 8, leastRatio = 1.1, roughly = 1e-3;
-static constexpr label roughIterations = 20;
+/*-  Where a film is not met at once: from the one of an oil whose ln(viscosity)
+     rises with pressure so small a part as much, in stages of so many times
+     more, less where one fails. Stages before the last are solved roughly.
 
-/*-  Where the heat is not met at once: from so small a part of it, so many
-     times as much in each stage, less where one fails
+     Such an oil has no spike. A law that bounds the stress, and heat, are there
+     from the first stage on: a film without them has a front far steeper, and
+     at a higher pressure, than the one that is asked for.
 */
-static constexpr scalar firstHeat = 1.0/64, heatRatio = 4;
+static constexpr scalar firstStiffness = 1.0/16, stiffening = 2, leastStiffening = 1.01, roughly = 1e-3;
+static constexpr label roughIterations = 30;
 
 /*-  Where the film that slides is not met at once: from the one that rolls,
      sliding by so large a part more, less where a stage fails
@@ -129,18 +128,34 @@ Foam::solvedFilm Foam::steadyState
     from.pressure = startPressure(dict, contact, x);
     from.central = dict.found("start") ? positive(dict.subDict("start"), "centralFilm") : filmScale;
     const auto first(from);
+    // without the spike that a start may have
+    auto dry(first);
+    dictionary withoutStart(dict);
+    withoutStart.remove("start");
+    dry.pressure = startPressure(withoutStart, contact, x);
+    dry.central = filmScale;
     label iterations = 0;
-    // the part of the sliding of a stage, and its contact, which outlives what is found on it
-    scalar slid = 1;
+    // the part of the sliding of a stage, and its contact, which outlives what is found on it; the part of the stiffening
+    scalar slid = 1, stiffness = 1;
     std::unique_ptr<lineContact> slower;
     solvedFilm found;
 
-    auto solve = [&](const word& type, const dictionary& law, const newtonControls& stageControls, const scalar heated = 0)
+    auto solve = [&](const word& type, const newtonControls& stageControls, const scalar heated = 0)
     {
         dictionary stage(dict);
-        stage.set("shear", law);
         if (heated > 0) stage.subDict("heat").set("share", heated);
         else stage.remove("heat");
+        if (stiffness < 1)
+        {
+            const word key("pressureViscosity");
+            dictionary& oil = stage.subDict("viscosity");
+            oil.set(key, stiffness*oil.get<scalar>(key));
+            if (heated > 0)
+            {
+                dictionary& oils = stage.subDict("heat").subDict("isotherms").subDict("viscosity");
+                oils.set(key, scalarField(stiffness*scalarField(oils.lookup(key))));
+            }
+        }
         found.tangent.reset();
         found.contact.reset();
         found.flow.reset();
@@ -156,9 +171,9 @@ Foam::solvedFilm Foam::steadyState
         const lineContact& here = slower ? *slower : contact;
         found.flow = filmFlow::New(type, stage, film, here);
         found.contact.reset(new slice(*found.flow, here, x, filmScale));
-        Info<< type << ", " << law.get<word>("type");
-        if (law.found("stress")) Info<< " " << law.get<scalar>("stress") << " Pa";
-        if (heated > 0) Info<< ", " << heated << " of the heat";
+        Info<< type;
+        if (heated > 0) Info<< " with heat";
+        if (stiffness < 1) Info<< ", " << stiffness << " of the stiffening";
         if (slid < 1) Info<< ", " << slid << " of the sliding";
         Info<< endl;
         slice::unknowns start(found.contact->start(from.pressure, from.central));
@@ -225,67 +240,44 @@ Foam::solvedFilm Foam::steadyState
         }
         return converged;
     };
-    // the same law with its bounds so many times as high
-    auto eased = [&](const scalar factor)
-    {
-        dictionary law(shear);
-        for (const word bound : {"stress", "ratio"})
-        {
-            if (shear.found(bound)) law.set(bound, factor*shear.get<scalar>(bound));
-        }
-        return law;
-    };
-
     const scalar heated = dict.found("heat") ? 1 : 0;
+    // the film without its heat, and from there with it
+    auto both = [&](const newtonControls& own)
+    {
+        return solve("thinFilm", own) && (heated == 0 || solve("thinFilm", own, heated));
+    };
     auto thin = [&]()
     {
-        if (!solve("thinFilm", shear, controls) && !newtonian)
+        if (both(controls)) return true;
+        from = dry;
+        const newtonControls begun{roughly, controls.maxIterations};
+        const newtonControls rough{roughly, min(controls.maxIterations, roughIterations)};
+        scalar reached = 0, ratio = stiffening;
+        while (reached < 1)
         {
-            dictionary newton(shear);
-            newton.set("type", word("Newtonian"));
-            if (!solve("thinFilm", newton, controls)) return false;
-            const newtonControls rough{roughly, min(controls.maxIterations, roughIterations)};
-            scalar reached = firstFactor, ratio = firstRatio;
-            while (reached > 1)
+            stiffness = reached > 0 ? ratio*reached : firstStiffness;
+            if (stiffness > 0.999) stiffness = 1;
+            if
+            (
+                reached == 0 ? both(begun)
+              : solve("thinFilm", rough, heated) && (stiffness < 1 || solve("thinFilm", controls, heated))
+            )
             {
-                const scalar next = max(scalar(1), reached/ratio);
-                if (solve("thinFilm", eased(next), next > 1 ? rough : controls))
-                {
-                    reached = next;
-                }
-                else if (ratio < leastRatio)
-                {
-                    return false;
-                }
-                else
-                {
-                    ratio = Foam::sqrt(ratio);
-                }
+                reached = stiffness;
+            }
+            else if (reached == 0 || ratio < leastStiffening)
+            {
+                found.result.reason = "no film of an oil that stiffens " + name(stiffness) + " as much by pressure as it does, from "
+                  + name(reached) + " on: " + found.result.reason;
+                break;
+            }
+            else
+            {
+                ratio = Foam::sqrt(ratio);
             }
         }
-        if (found.result.end != outcome::converged) return false;
-        if (heated > 0 && !solve("thinFilm", shear, controls, heated))
-        {
-            // a little heat first: it thins the oil where most of it is made
-            scalar reached = 0, ratio = heatRatio;
-            while (reached < heated)
-            {
-                const scalar next = reached > 0 ? min(heated, ratio*reached) : firstHeat;
-                if (solve("thinFilm", shear, controls, next))
-                {
-                    reached = next;
-                }
-                else if (reached == 0 || ratio < leastRatio)
-                {
-                    return false;
-                }
-                else
-                {
-                    ratio = Foam::sqrt(ratio);
-                }
-            }
-        }
-        return true;
+        stiffness = 1;
+        return reached == 1;
     };
     // up from the film that rolls, which is far from the one that slides
     auto slide = [&]()
@@ -296,7 +288,7 @@ Foam::solvedFilm Foam::steadyState
         while (reached < 1)
         {
             slid = min(scalar(1), reached + step);
-            if (solve("thinFilm", shear, controls, heated))
+            if (solve("thinFilm", controls, heated))
             {
                 reached = slid;
                 step *= 1.5;
@@ -313,9 +305,8 @@ Foam::solvedFilm Foam::steadyState
     // a start with temperatures is near the film with all of its heat; who gives it has others where it leads nowhere
     const bool warm = heated > 0 && dict.found("start") && dict.subDict("start").found("temperatures");
     const newtonControls near{controls.tolerance, controls.maxIterations, nearPressure};
-    if (warm && !solve("thinFilm", shear, near, heated)) return found;
-    bool met = warm || (slides && solve("thinFilm", shear, controls)
-        && (heated == 0 || solve("thinFilm", shear, controls, heated)));
+    if (warm && !solve("thinFilm", near, heated)) return found;
+    bool met = warm || (slides && both(controls));
     if (slides && !met)
     {
         from = first;
@@ -329,6 +320,6 @@ Foam::solvedFilm Foam::steadyState
     // where all stresses have no solution to be found, the thin film shows whether the law of shear is admissible
     found.contact->residual(found.result.state, nullptr);
     writeTable(film.mesh().time().path()/"thinFilm.dat", *found.contact, found.contact->film(found.result.state));
-    solve(flow, shear, controls, heated);
+    solve(flow, controls, heated);
     return found;
 }
