@@ -13,7 +13,7 @@ from ehdmaps.report.chart import WIDE, Chart, Curve, Shade, figure, linear_axis,
 from ehdmaps.report.page import Markup, joined, table, tag
 from ehdmaps.units import MOTIONS, RPM
 from mbs.analyses.sweep import CriticalResult
-from mbs.linearised.critical import CriticalSpeed
+from mbs.linearised.critical import CLOSE, CriticalSpeed
 from mbs.linearised.linear import sensor_unit
 from mbs.linearised.mode_names import IN_A_PLANE
 from mbs.output.sweep_data import sensed
@@ -107,9 +107,9 @@ def _turning(whirl: float) -> str:
 
 def _margin(entry: CriticalSpeed, low: float, high: float) -> tuple[float | None, bool]:
     """Distance of a critical speed from operation, as a part of the nearer end, and whether it lies above."""
-    if entry.speed > high:
+    if entry.speed > high * (1.0 + CLOSE):
         return (entry.speed / high - 1.0 if high > 0.0 else math.inf), True
-    return (None, False) if entry.speed >= low else (1.0 - entry.speed / low, False)
+    return (None, False) if entry.speed >= low * (1.0 - CLOSE) else (1.0 - entry.speed / low, False)
 
 
 def unbalance_parts(found: CriticalResult) -> Markup:
