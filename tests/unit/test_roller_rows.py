@@ -19,6 +19,7 @@ from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.roller_contacts import RollerContacts
+from mbs.cli import main
 
 NN = designated("NN3014").with_clearance(5e-6)
 ONE = dataclasses.replace(NN, row_distance=None)
@@ -113,6 +114,14 @@ def test_the_catalogue_has_rollers_as_they_are_made():
         assert 2e3 * found.roller_diameter == pytest.approx(round(2e3 * found.roller_diameter), abs=1e-9)
         ratios.append(dynamic / row[4])
     assert len(ratios) == 39 and np.max(np.abs(np.array(ratios) - 1.0)) < 0.02
+
+
+def test_the_page_has_its_rows(capsys):
+    assert main(["bearing", "NN3014", "--load", "5 kN", "--speed", "1000 rpm", "--law", "hertz"]) == 0
+    out = capsys.readouterr().out
+    assert "50 rollers in 2 rows, 12.77 mm apart" in out and "of 50 rollers carry" in out
+    assert main(["bearing", "NNCF5010", "--load", "5 kN", "--axial", "1 kN", "--speed", "1000 rpm"]) == 2
+    assert "those of NNCF: not yet" in capsys.readouterr().err
 
 
 def test_its_keys_come_back():

@@ -35,7 +35,7 @@ _FAMILIES = tuple(
         (r"(?:42|43)[ -]?\d\d", "double row deep groove ball bearing"),
         (r"QJF[ -]?\d{3,4}", "four-point contact ball bearing"),
         (r"(?:NNU?|NNTR?)[ -]?\d{4,5}", "double row cylindrical roller bearing"),
-        (r"(?:NNCF?|NNCL|NNF|NCF|NCL|NJG|NJF|SL)[ -]?\d{4,6}", "full complement cylindrical roller bearing"),
+        (r"(?:NNCF?|NNCL|NNF|NCF|NCL|NJG|NJF|SL|E(?=50))[ -]?\d{4,6}", "full complement cylindrical roller bearing"),
         (r"(?:RNU|RN|NF|NP|NH|NUB|NJP|NUJ|NFP)[ -]?\d{3,4}", "cylindrical roller bearing of another type"),
         (r"(?:BK|HN|RHNA?)[ -]?\d{4}", "drawn cup needle roller bearing"),
         (r"(?:NKI[ABS]?|NKS|NKXR?|NK|NXZ?|R?NAO|NAX[IRK]*)[ -]?\d[\dX*/-]*", "needle roller bearing of another type"),

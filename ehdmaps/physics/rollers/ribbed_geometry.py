@@ -222,8 +222,8 @@ def ribbed_estimate(
 
 
 NO_RIBS = (
-    "allowed for axial loads: balls, tapered rollers, NJ, NUP and NCF; N and NU have ribs on one ring only, needles "
-    "none"
+    "allowed for axial loads: balls, tapered rollers, NJ, NUP and NCF; N, NU, NN and NNU have ribs on one ring only, "
+    "needles none; those of NNCF: not yet"
 )
 """Why a bearing carries no axial load."""
 

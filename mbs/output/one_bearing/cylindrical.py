@@ -114,9 +114,11 @@ def _about(description: Description, point: BearingPoint) -> list[str]:
     clearance = f"clearance {MICROMETRE.text(bearing.geometry.diametral_clearance)}{beside_class(bearing.geometry)}"
     state = clearance if description.state is None else state_words(description.state)
     slices = f"{bearing.slices} {'coupled ' if bearing.coupled else ''}slices"
+    rows = bearing.geometry.row_words
     return [
+        *([f"{bearing.geometry.rolling_elements} rollers{rows}"] if rows else []),
         f"{TEMPERATURE.text(description.temperature)}, {state}, profile {bearing.profile}, {slices}, "
-        f"load at {description.direction:.4g} deg from y (a roller) towards z, {surface_label(description.surface)}"
+        f"load at {description.direction:.4g} deg from y (a roller) towards z, {surface_label(description.surface)}",
     ]
 
 
