@@ -1,11 +1,11 @@
 """Step and slices of a run-up that keep its sum level within a tolerance: the run itself says whether they do.
 
 A run states the error of its step from parts of it that it makes again (`mbs.analyses.step_error`), at no cost but that
-of any run. Where that does not keep the tolerance the run is made again with half the step. Slices are chosen before,
-by trials: the whole ramp in a small part of its time, so that all resonances are passed, with twice the step. One with
-the slices is held beside one with about twice as many, until the levels differ by half of the tolerance at most; the
-step has what they leave of it. Of second order in the slices, 4/3 d is the error where d is the change by half of their
-width. Modes of flexible bodies stay as they are.
+of any run. Where that takes more than three quarters of the tolerance the run is made again with half the step. The
+rest is for slices, which are tried: the whole ramp in a small part of its time, so that all resonances are passed, with
+twice the step. A trial with the slices is held beside one with about twice as many; where they have to be more the run
+is made once more. Of second order in the slices, 4/3 d is the error where d is the change by half of their width. Modes
+of flexible bodies stay as they are.
 
 A run that does not forget its start, such as one of rollers that lift off without damping, has no level at a speed that
 a shorter step would come closer to: what rounding changes grows to the size of the signal. Half the step brings nothing
@@ -65,7 +65,7 @@ LEAST_PERIODS = 2.5
 """Fewest periods of the highest frequency in a window of a trial: a short ramp is hurried less, or not at all."""
 
 _ORDER = 4.0
-_SLICES_SHARE = 0.5
+_STEP_SHARE = 0.75
 _MOST_TRIALS = 9
 
 _PROGRESS = 0.75
@@ -229,21 +229,14 @@ def within(
     if not LEAST <= tolerance <= MOST:
         raise InputError(f"tolerance: got {tolerance!r} dB; allowed: {ALLOWED}")
     settings = settings or subject.scene.campbell
-    given, begin = Numerics.of(subject.scene), time.process_time()
+    given = numerics = Numerics.of(subject.scene)
     trials = _Trials(subject, looked_at(subject.scene, settings)[0], settings.highest, progress or silent)
-    numerics, change, lines = _with_slices(trials, tolerance, given)
-    seconds, before, could_not = time.process_time() - begin, math.inf, ""
-    if change > tolerance:
-        # A shorter step is no cure for that.
-        could_not = (
-            f"the sum level still changes too much by slices: {_decibel(change)} up to {numerics.words('slices')}"
-        )
+    allowed = tolerance * (1.0 if given.slices is None else _STEP_SHARE)
+    change, before, could_not, lines = 0.0, math.inf, "", list[str]()
     while True:
-        chosen, step = numerics.applied(subject), numerics.words("step")
-        found, check = run(chosen)
-        error = math.nan if check is None else float(check.by_level.max(axis=0)[check.names.index(trials.sensor.name)])
-        met = not could_not and error + change <= tolerance
-        if could_not or not error + change > tolerance:
+        found, error = trials.made(run, numerics)
+        step = numerics.words("step")
+        if not error > allowed:
             break
         if error > _PROGRESS * before:
             could_not = (
@@ -257,8 +250,18 @@ def within(
             break
         lines.append(f"  {step}: {error:.2g} dB by the run, so that it is made again with half of it")
         before, numerics = error, numerics._replace(step=0.5 * numerics.step)
+    if error <= allowed:
+        more, change, tried = _with_slices(trials, tolerance - error, numerics)
+        lines += tried
+        if error + change > tolerance:
+            could_not = (
+                f"the sum level still changes too much by slices: {_decibel(change)} up to {more.words('slices')}"
+            )
+        elif more != numerics:
+            numerics, (found, error) = more, trials.made(run, more)
+    met = not could_not and error + change <= tolerance
     lines.append(f"  chosen: {numerics.words()}{', as the scene has it' if numerics == given else ''}")
-    of_slices = "" if numerics.slices is None else f", slices {change:.2g} dB by trials"
+    of_slices = f", slices {change:.2g} dB by trials" if trials.count else ""
     parts = f"step {error:.2g} dB by parts that it made again{of_slices}"
     lines.append(
         f"  confirmed by the run, its {trials.of_what} within {error + change:.2g} dB: {parts}"
@@ -266,14 +269,16 @@ def within(
         else f"warning: could not: {could_not or f'the run does not confirm it: {parts}'}"
     )
     if trials.count:
-        lines.append(f"  {trials.count} trials of {trials.steps} steps in all took {seconds:.3g} s of processor time")
+        lines.append(
+            f"  {trials.count} trials of {trials.steps} steps in all took {trials.seconds:.3g} s of processor time"
+        )
     head = f"tolerance {tolerance:g} dB of the {trials.of_what}"
-    return Tolerated(chosen, numerics, (head, *lines), met, error + change), found
+    return Tolerated(numerics.applied(subject), numerics, (head, *lines), met, error + change), found
 
 
 @dataclass
 class _Trials:
-    """Trials of slices with twice the step, and what they cost."""
+    """Runs, and trials of slices with twice the step, and what these cost."""
 
     subject: Subject
     sensor: Sensor
@@ -281,6 +286,7 @@ class _Trials:
     tell: Progress
     count: int = 0
     steps: int = 0
+    seconds: float = 0.0
 
     @property
     def of_what(self) -> str:
@@ -292,6 +298,13 @@ class _Trials:
             f"{100.0 * QUANTILE:g} % of windows of {window}"
         )
 
+    def made(self, run: Callable[[Subject], tuple[Found, StepCheck | None]], numerics: Numerics) -> tuple[Found, float]:
+        """A run with some settings, and the error of its step that it states [dB], NaN where it states none."""
+        found, check = run(numerics.applied(self.subject))
+        if check is None:
+            return found, math.nan
+        return found, float(check.by_level.max(axis=0)[check.names.index(self.sensor.name)])
+
     def sizes(self, numerics: Numerics) -> FloatArray:
         """Sizes of the signal in the windows of a trial; NaN where it finds no solution."""
         subject = numerics.applied(self.subject)
@@ -302,19 +315,20 @@ class _Trials:
         assert scene.run_up is not None
         self.count += 1
         self.tell(min(self.count, _MOST_TRIALS), _MOST_TRIALS)
+        begin = time.process_time()
         try:
             model = held(dataclasses.replace(subject, scene=scene).model())
             record = recorded_run(model, scene.run_up, (self.sensor,))
         except AnalysisError:
             return np.full((WINDOWS, 1), np.nan)
-        self.steps += record.steps
+        self.steps, self.seconds = self.steps + record.steps, self.seconds + time.process_time() - begin
         return window_sizes(up_to(record.signals, numerics.step, min(self.highest, 0.25 / numerics.step)), WINDOWS)
 
 
-def _with_slices(trials: _Trials, tolerance: float, given: Numerics) -> tuple[Numerics, float, list[str]]:
-    """Slices that keep their share of the tolerance, the error that they leave [dB], and what was tried."""
+def _with_slices(trials: _Trials, allowed: float, chosen: Numerics) -> tuple[Numerics, float, list[str]]:
+    """Slices that keep an error, the error that they leave [dB], and what was tried."""
     # What slices do hardly depends on the step, and twice the step costs half.
-    numerics, change, lines, sizes = given._replace(step=2.0 * given.step), 0.0, [], None
+    numerics, change, lines, sizes = chosen._replace(step=2.0 * chosen.step), 0.0, [], None
     while numerics.slices is not None and 2 * numerics.slices - 1 <= MOST_SLICES:
         sizes = trials.sizes(numerics) if sizes is None else sizes
         more = numerics._replace(slices=2 * numerics.slices - 1)
@@ -322,12 +336,12 @@ def _with_slices(trials: _Trials, tolerance: float, given: Numerics) -> tuple[Nu
         change = float(np.quantile(level_change(sizes, finer), QUANTILE)) * _ORDER / (_ORDER - 1.0)
         change = math.inf if math.isnan(change) else change
         lines.append(f"  {numerics.words('slices')}: {_decibel(change)}")
-        if change <= _SLICES_SHARE * tolerance:
+        if change <= allowed:
             break
         numerics, sizes = more, finer
     if trials.count:
         trials.tell(_MOST_TRIALS, _MOST_TRIALS)
-    return numerics._replace(step=given.step), change, lines
+    return numerics._replace(step=chosen.step), change, lines
 
 
 def _decibel(value: float) -> str:

@@ -203,11 +203,22 @@ class TestChoosing:
         assert "could not: the sum level still changes too much by slices" in "\n".join(found.lines)
 
     @pytest.mark.slow
-    def test_few_slices_are_doubled(self):
+    def test_few_slices_are_doubled(self, monkeypatch):
+        """Trials with 3 and 5 slices are 20 dB apart, those with 5 and 9 a fifth of one: 5 are taken, and run."""
+        found_by = {3: 1.0, 5: 10.0, 9: 10.2}
+        monkeypatch.setattr(
+            tolerance_module._Trials, "sizes", lambda self, numerics: np.full((40, 1), found_by[numerics.slices])
+        )
         scene = changes.with_slices(changes.with_duration(read_scene("nu308_rigid"), 0.2), 3)
-        found = within(Subject(scene, LawChoice("damped", "hertz:1.25e-5 s")), 5.0)
-        assert found.numerics.slices > 3
-        assert "  3 slices: " in "\n".join(found.lines)
+        runs = []
+
+        def counted(changed):
+            runs.append(changed.scene.bearings[0].slices)
+            return run(changed)
+
+        found, _ = tolerance_module.within(Subject(scene, DAMPED), 20.0, counted)
+        assert found.met and found.numerics.slices == 5 and runs == [3, 5]
+        assert "  3 slices: 27 dB" in "\n".join(found.lines)
 
 
 class TestCommand:
@@ -231,7 +242,7 @@ class TestCommand:
             "bands",
         )
         given = argparse.Namespace(**dict.fromkeys(names), scene=str(scene), tolerance="20 dB", modes=False, workers=1)
-        given.load_factor = given.start_angle = None
+        given.load_factor = given.start_angle = given.executor = None
         text, status = importlib.import_module("mbs.commands.campbell").run(given)
         assert status == 0
         assert "tolerance 20 dB of the sum level of S1" in text
@@ -255,7 +266,9 @@ class TestCommand:
         scene = tmp_path / "swinging.toml"
         text = SWINGING.replace('"1 s"', '"0.05 s"').replace('step = "20 us"', 'step = "20 us"\nsample = "0.1 ms"')
         scene.write_text(text)
-        given = argparse.Namespace(scene=str(scene), tolerance="20 dB", workers=1, output=None, plot=None)
+        given = argparse.Namespace(
+            scene=str(scene), tolerance="20 dB", workers=1, output=None, plot=None, executor=None
+        )
         runup = importlib.import_module("mbs.commands.runup").run
         text, status = runup(given)
         assert status == 0 and asked == [20.0]
