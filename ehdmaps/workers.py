@@ -3,6 +3,11 @@
 A process of a `worker_pool` is silent until it begins its first task: before, it runs the script of its parent again
 and imports what the task needs. What Python prints of one that does not get so far is kept for the one sentence that
 its parent says.
+
+It stays beside loky, which would replace the part that starts processes. What that leaves undone is what most lines
+here are for: a worker of loky goes on for as long as its task takes when its parent is killed; the error for one that
+died tells its exit status, but not what it printed; nothing keeps Ctrl-C from it, or lets one say for all that it
+compiles. Engines of others are another thing, see `ehdmaps.jobs.executors`.
 """
 
 from __future__ import annotations

@@ -127,7 +127,7 @@ def of_dask(bench: Bench, own: Path) -> None:
         with cluster() as made:
             command = generate(f"dask{number}", "--executor", f"dask:{made.address}")
             process = bench.begun(command)
-            status, said = bench.after(process, "points", partial(fault, made, process))
+            status, said = bench.after(process, r"[1-9]\d* of \d+ points", partial(fault, made, process))
             again = 0
             while status and again < 3:
                 again += 1
@@ -157,9 +157,9 @@ def killed_once_kept(bench: Bench, process: subprocess.Popen[str]) -> None:
 
 def of_runs(bench: Bench) -> None:
     """Run-ups by dask, with each fault."""
-    status, said = bench.done([*RUN, "-o", "own.nc"])
+    status, said = bench.done([*RUN, "-o", "own_run.nc"])
     assert status in (0, 1), said
-    own = bench.folder / "own.nc"
+    own = bench.folder / "own_run.nc"
     for number, words in enumerate(("a worker killed by -9", "driver killed by -9, same command again")):
         with cluster() as made:
             command = [*RUN, "-o", f"run{number}.nc", "--executor", f"dask:{made.address}"]

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import re
-import signal
+import os
+import random
+import shlex
 import subprocess
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
+import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,9 @@ import xarray as xr
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.cli import main
 from ehdmaps.jobs.executors import executor_problem, named_executor
+from mbs.analyses.case import side_by_side
+from mbs.cli import main as mbs
+from tests.cases.dask_cluster import cluster, kill
 from tests.cases.jobs import SMALL
 
 FIELDS = ("stiffness", "damping", "central_film", "film_offset")
@@ -27,24 +31,6 @@ def job(tmp_path: Path) -> Path:
     path = tmp_path / "small.toml"
     path.write_text(SMALL)
     return path
-
-
-@contextmanager
-def running(*arguments: str, until: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
-    """A process of dask's, with what it says of `until` once it is there."""
-    with subprocess.Popen(
-        [sys.executable, "-m", "distributed.cli." + arguments[0], *arguments[1:]], stderr=subprocess.PIPE, text=True
-    ) as process:
-        try:
-            assert process.stderr is not None
-            for line in process.stderr:
-                if found := re.search(until, line):
-                    break
-            else:
-                raise AssertionError(f"{arguments} ended: {process.wait()}")
-            yield process, found[1]
-        finally:
-            process.send_signal(signal.SIGKILL)
 
 
 def same(one: Path, other: Path) -> None:
@@ -102,25 +88,104 @@ def test_ranks_of_mpi_make_the_same_map(job, tmp_path, capsys):
     same(tmp_path / "own.nc", tmp_path / "theirs.nc")
 
 
+RUN = ["campbell", "nu308_rigid", "--law", "hertz", "--law", "constant:hertz"]
+
+
 @pytest.mark.slow  # the same
-def test_a_dask_cluster_that_loses_a_worker_makes_the_same_map(job, tmp_path, capsys):
-    """A scheduler and two workers; one is killed by SIGKILL once the first points are told."""
+def test_a_dask_cluster_that_loses_a_worker_and_its_scheduler(job, tmp_path, capsys, monkeypatch):
+    """A scheduler and two workers: one is killed by SIGKILL, then the scheduler, which begins anew at its address.
+
+    The map is that of this process, and so is a run-up with two laws.
+    """
+    monkeypatch.setenv("EHDMAPS_CASES", str(tmp_path / "cases"))
     assert main(["generate", str(job), "-o", str(tmp_path / "own.nc"), "--workers", "1"]) == 0
-    there = r"Scheduler at: +(tcp://\S+)"
-    worker = r"Registered to: +(\S+)"
-    ends = ["--no-dashboard", "--nthreads", "1"]
-    with running("dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", until=there) as (_, address):
-        with (
-            running("dask_worker", address, *ends, until=worker) as (doomed, _),
-            running("dask_worker", address, *ends, until=worker),
-        ):
-            command = [sys.executable, "-m", "ehdmaps", "generate", str(job), "-o", str(tmp_path / "theirs.nc")]
-            with subprocess.Popen(
-                [*command, "--executor", f"dask:{address}"], stderr=subprocess.PIPE, text=True
-            ) as run:
-                assert run.stderr is not None
-                first = next((line for line in run.stderr if "points" in line), "")
-                doomed.send_signal(signal.SIGKILL)
-                said = first + run.stderr.read()
-        assert run.returncode == 0, said
-    same(tmp_path / "own.nc", tmp_path / "theirs.nc")
+    with cluster() as made:
+        engine = ["--executor", f"dask:{made.address}"]
+        command = [sys.executable, "-m", "ehdmaps", "generate", str(job), "-o", str(tmp_path / "theirs.nc"), *engine]
+        with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as run:
+            assert run.stderr is not None
+            said = next((line for line in run.stderr if "points" in line), "")
+            time.sleep(random.uniform(0.0, 0.5))
+            kill(made.workers[0])
+            made.restart_scheduler()
+            said += run.stderr.read()
+        if run.returncode:  # what was lost twice is left for the same command
+            assert main(command[3:]) == 0, said
+        same(tmp_path / "own.nc", tmp_path / "theirs.nc")
+        for path, more in (("run.nc", []), ("runs.nc", engine)):
+            assert mbs([*RUN, "-o", str(tmp_path / path), *more]) in (0, 1)
+    with xr.open_dataset(tmp_path / "run.nc") as one, xr.open_dataset(tmp_path / "runs.nc") as other:
+        assert set(one.variables) == set(other.variables)
+        for name in one.variables:
+            np.testing.assert_array_equal(one[name].values, other[name].values)
+    assert not list((tmp_path / "cases").glob("*"))  # all are there: nothing is kept any more
+
+
+class Stops(Exception):  # noqa: N818  # as others call theirs
+    """What a stopped driver says here."""
+
+
+def test_runs_of_a_driver_that_stopped_are_kept(tmp_path, monkeypatch):
+    """The same cases again do the rest only; what is damaged is done again."""
+    monkeypatch.setenv("EHDMAPS_CASES", str(tmp_path / "cases"))
+    told: list[int] = []
+
+    def look(done: int, total: int) -> None:
+        told.append(done)
+        if done == 2:
+            raise Stops
+
+    with ThreadPoolExecutor(1) as pool:
+        with pytest.raises(Stops):
+            list(side_by_side(squared, range(4), [1] * 4, pool, look, str))
+        kept = sorted((tmp_path / "cases").glob("*.pickle"))
+        assert len(kept) == 2
+        kept[0].write_bytes(b"no pickle")
+        DONE.clear()
+        assert list(side_by_side(squared, range(4), [1] * 4, pool, None, str)) == [0, 1, 4, 9]
+    assert len(DONE) == 3
+    assert not list((tmp_path / "cases").glob("*"))
+
+
+DONE: list[int] = []
+
+
+def squared(value, told):
+    DONE.append(value)
+    return value * value
+
+
+SRUN = """#!/bin/sh
+printf '%s ' "$@" >> "$SRUN_LOG"
+while [ "$1" != "{python}" ]; do shift; done
+exec "$@"
+"""
+"""A stand-in for Slurm's: it runs the command here."""
+
+
+@pytest.mark.slow  # processes that import all of it
+def test_what_a_user_of_slurm_types(job, tmp_path, monkeypatch, capsys):
+    """The command of the page runs, with a stand-in for `srun`; so does the one of an array, by its text."""
+    page = (Path(__file__).parents[2] / "docs" / "clusters.md").read_text()
+    lines = [line for line in page.splitlines() if line.startswith("sbatch ")]
+    words = [shlex.split(line) for line in lines]
+    folder = tmp_path / "bin"
+    folder.mkdir()
+    (folder / "srun").write_text(SRUN.format(python=sys.executable))
+    (folder / "ehdmaps").write_text(f'#!/bin/sh\nexec {sys.executable} -m ehdmaps "$@"\n')
+    for program in folder.iterdir():
+        program.chmod(0o755)
+    names = {"PATH": f"{folder}{os.pathsep}{os.environ['PATH']}", "SRUN_LOG": str(tmp_path / "log")}
+    environment = {**os.environ, **names, "SLURM_ARRAY_TASK_ID": "2"}
+    assert main(["generate", str(job), "-o", str(tmp_path / "own.nc"), "--workers", "1"]) == 0
+    wrapped = words[0][words[0].index("--wrap") + 1]
+    assert "--executor executorlib:slurm" in wrapped
+    command = wrapped.replace("nu308_night", str(job)).replace("--workers 32", "--workers 2")
+    subprocess.run(["sh", "-c", command], cwd=tmp_path, env=environment, check=True, timeout=300, capture_output=True)
+    same(tmp_path / "own.nc", tmp_path / "small.nc")
+    assert "-n 1" in (tmp_path / "log").read_text()
+    (tmp_path / "jobs.txt").write_text(f"nu308\n{job.with_name('second.toml')}\n")
+    job.with_name("second.toml").write_text(SMALL)
+    array = words[1][words[1].index("--wrap") + 1]
+    subprocess.run(["sh", "-c", array], cwd=tmp_path, env=environment, check=True, timeout=300, capture_output=True)
+    same(tmp_path / "own.nc", tmp_path / "second.nc")
