@@ -257,6 +257,7 @@ def bearing_point(
         pose=pose,
         stiffness=balance.element_stiffness[0],
         damping=balance.element_damping[0],
+        balance=balance,
         elements=rollers,
         contacts=contacts,
         loss=rolling_loss(force.bearing, films, contacts, rollers, u, speed, temperature),

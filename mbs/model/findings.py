@@ -264,6 +264,8 @@ class RingPoint(WithFindings):
         What is beyond its laws, and what else is to be known.
     failed : bool
         Whether it has no answer: numbers are NaN, and `problems` say why.
+    balance : Equilibrium or None
+        The equilibrium of the bearing as a system of its own; None where there is none.
     """
 
     load: FloatArray
@@ -275,6 +277,7 @@ class RingPoint(WithFindings):
     damping: FloatArray
     findings: tuple[Finding, ...]
     failed: bool = False
+    balance: Any = None
 
     @property
     def geometry(self) -> Any:

@@ -37,6 +37,9 @@ LOADINGS = (0.15, 0.5, 1.2, 2.2, 3.0), (0.15, 0.6, 1.5, 3.0)
 LOAD_NUMBERS = (0.3, 2.0, 5.0, 15.0, 60.0), (0.4, 2.5, 8.0, 50.0)
 """QL and M at either temperature; around M = 1 there is the valley, where no factor of the losses holds."""
 
+BEYOND, LOADS_BEYOND = (5.0, 8.0), (2.5, 8.0, 30.0)
+"""QL, and M, of lines with more heat than those which made the rule, at the first temperature."""
+
 NAMES = ("central_film", "film_offset", "film_compliance", "loss_compliance")
 
 
@@ -63,8 +66,8 @@ def solved(name: str, celsius: float, loading: float, load_number: float) -> dic
 
 
 def fitted(rows: list[dict[str, float]]) -> FloatArray:
-    """Heating at QL = M = 1, exponents of QL and M, and the M of half the heating: without the oil that is left out."""
-    kept = [row for row in rows if row["oil"] != LEFT_OUT]
+    """Heating at QL = M = 1, exponents of QL and M, and the M of half the heating, of what made the rule."""
+    kept = [row for row in rows if row["oil"] != LEFT_OUT and row["QL"] < BEYOND[0]]
     M, QL, film = (np.array([row[key] for row in kept]) for key in ("M", "QL", "central_film"))
 
     def wrong(p: FloatArray) -> FloatArray:
@@ -80,6 +83,8 @@ def main() -> None:
         for celsius, loadings, load_numbers in zip(temperatures, LOADINGS, LOAD_NUMBERS, strict=True):
             for loading in loadings:
                 rows += filter(None, (solved(name, celsius, loading, M) for M in load_numbers))
+        more = (solved(name, temperatures[0], loading, M) for loading in BEYOND for M in LOADS_BEYOND)
+        rows += filter(None, more)
     texts = ["".join(f"{key} = {value!r}\n".replace("'", '"') for key, value in row.items()) for row in rows]
     FILE.write_text(
         "# Films with temperatures over isothermal ones, by `python -m tests.benchmarks.warm_lines`.\n"

@@ -5,10 +5,12 @@ the logarithm of a line. Reynolds' equation with second-order flow along the rol
 with dense matrices. The film has layers across its half, for pure rolling is symmetric: each layer has the velocity of
 the flow with its own viscosities, heat of shear and of compression, convection along, across the contact and between
 layers by the flow of the same cells, conduction to the walls, and walls that are moving half-spaces with the heat of
-their row (Jaeger). Viscosity is that of the oil at each pressure and temperature. Density goes by pressure alone.
-Nothing is taken from the solvers, tables or rules of the package but laws of the oil over pressure and temperature.
+their row (Jaeger). Viscosity is that of the oil at each pressure and temperature, density goes by pressure and by the
+mean temperature across the film. Slow motion adds what each cell stores: oil, heat, and heat in the walls. Nothing is
+taken from the solvers, tables or rules of the package but laws of the oil over pressure and temperature.
 
-`python -m tests.benchmarks.warm_point` writes `tests/references/warm_points.toml`: heated over isothermal films.
+`python -m tests.benchmarks.warm_point` writes `tests/references/warm_points.toml`: heated over isothermal films; with
+`slow` it writes `slow_points.toml`.
 """
 
 from __future__ import annotations
@@ -194,6 +196,9 @@ class WarmPoint:
         self.gap = 0.0
         self.warm = np.zeros((grid.cells, layers))
         self.surface = np.zeros(grid.cells)
+        self.content_rate, self.pressure_rate = np.zeros(grid.cells), np.zeros(grid.cells)
+        self.warm_rate, self.surface_rate = np.zeros((grid.cells, layers)), np.zeros(grid.cells)
+        self.thinned = np.ones(grid.cells)  # mean density across the film over the cold one
 
     def _operators(self) -> None:
         """Gradients and means at the faces between cells, and the flow with the surfaces."""
@@ -250,7 +255,8 @@ class WarmPoint:
     def _density(self, pressure: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Density over that at rest, and its slope."""
         p = np.maximum(pressure, 0.0) * self.peak
-        return self.state.density_ratio(p), self.state.density_ratio_slope(p) * self.peak
+        slope = self.state.density_ratio_slope(p) * self.peak
+        return self.thinned * self.state.density_ratio(p), self.thinned * slope
 
     def _cold(self, pressure: FloatArray) -> tuple[FloatArray, FloatArray]:
         """ln(eta/eta0) of the supplied oil, and its slope."""
@@ -286,6 +292,33 @@ class WarmPoint:
         film.warmest = float(self.warm.max())
         return film
 
+    def slow_motion(self, heat: bool) -> tuple[float, float]:
+        """Film compliance and loss compliance where the load moves slowly; in Hertz' units, of a point contact.
+
+        Mass, heat and pressure of every cell move as those of the films at neighbouring loads do, and what the film
+        offset gives way to that rate at the held load is the loss compliance.
+        """
+        settled = 1e-5 if heat else 1.0
+        self.solved(heat, settled)
+        step, given, states = 0.01, self.weight, []
+        for load in (1.0 + step, 1.0 - step):
+            self.weight = given * load
+            film = self.solved(heat, settled)
+            offset = film.film_offset + self.dry * (load ** (2.0 / 3.0) - 1.0)
+            states.append((offset, self.rho * self.H, self.warm.copy(), self.pressure.copy(), self.surface.copy()))
+        self.weight = given
+        falls, *rates = ((above - below) / (2.0 * step) for above, below in zip(*states, strict=True))
+        rate, offsets = 0.05, []
+        for towards in (rate, -rate):
+            self._moving(*(towards * each for each in rates))
+            offsets.append(self.solved(heat, settled).film_offset)
+        self._moving(*(0.0 * each for each in rates))
+        return float(-falls), float(offsets[0] - offsets[1]) / (2.0 * rate)
+
+    def _moving(self, content: FloatArray, warm: FloatArray, pressure: FloatArray, surface: FloatArray) -> None:
+        """Take rates of oil, temperatures and pressures, over the time that the oil needs for a half-width."""
+        self.content_rate, self.warm_rate, self.pressure_rate, self.surface_rate = content, warm, pressure, surface
+
     def _newton(self) -> Film:
         """Pressures with the temperatures that are known."""
         n, weight = self.grid.cells, self.weight
@@ -303,7 +336,7 @@ class WarmPoint:
             )
             lost = np.zeros(n)
             np.add.at(lost, self.edge, out)
-            residual = -(self.gradient.T @ flow) - lost * P - self.carried @ (rho * H)
+            residual = -(self.gradient.T @ flow) - lost * P - self.carried @ (rho * H) - self.area * self.content_rate
             by_P = -(self.gradient.T @ (
                 sp.diags(mob) @ self.gradient
                 + sp.diags(flow) @ self.mean @ sp.diags(-de)
@@ -358,6 +391,8 @@ class WarmPoint:
         ends = np.arange(rows)
         net[ends] += 0.5 * (self.at_faces @ (self.rho * H))[:rows, None] * thin
         net[n - 1 - ends[::-1]] -= 0.5 * (self.at_faces @ (self.rho * H))[-rows:, None] * thin
+        half = 0.5 * thin * self.area
+        net -= (half * self.content_rate)[:, None]
         rising = np.cumsum(net, axis=1)[:, :-1]  # from each layer to the one above it
         number = np.arange(n * layers).reshape(n, layers)
         entries: list[tuple[FloatArray, FloatArray, FloatArray]] = []
@@ -380,6 +415,8 @@ class WarmPoint:
         power = np.zeros((n, layers))
         np.add.at(power, near, falls)
         np.add.at(power, far, falls)
+        power += (half * H * self.pressure_rate)[:, None]
+        stored = (half * self.rho * H)[:, None] * self.warm_rate
         # what the pressure flow loses at each face is heat of the cells beside it
         lost = -0.25 * self.flow * (P[far] - P[near])
         sheared = np.bincount(near, np.abs(lost), n) + np.bincount(far, np.abs(lost), n)
@@ -391,6 +428,7 @@ class WarmPoint:
             share = squares / squares.sum(axis=1, keepdims=True)
             right = self.compression * (sheared[:, None] * share + self.expansion * self.temperature * power)
             right[:, -1] += 2.0 * conduction * self.surface
+            right -= stored
             if matrix is None:
                 row, column, value = (np.concatenate([np.broadcast_to(entry[k], entry[0].shape) for entry in entries])
                                       for k in range(3))  # fmt: skip
@@ -399,9 +437,13 @@ class WarmPoint:
             found = np.clip(solver.solve(-right.ravel()).reshape(n, layers), -14.0, 110.0)
             self.warm = 0.5 * (self.warm + found)
             flux = 2.0 * (self.warm[:, -1] - self.surface) / (0.5 * H * thin)
-            self.surface = self.wall * (self.jaeger @ flux.reshape(-1, rows)).ravel()
+            memory = 0.5 * np.cumsum(np.repeat(self.grid.dx, rows).reshape(-1, rows)
+                                     * self.surface_rate.reshape(-1, rows), axis=0)  # fmt: skip
+            self.surface = (self.wall * (self.jaeger @ flux.reshape(-1, rows)) - memory).ravel()
         shares, mobility, _ = self._shares(self._log_ratio(P, cold))
         change = float(np.max(np.abs(mobility - self.mobility)[(P > 1e-6)]))
+        thinned = 1.0 - self.expansion * np.mean(self.warm, axis=1)
+        self.thinned = (1.0 - rate) * self.thinned + rate * thinned
         self.shares = (1.0 - rate) * self.shares + rate * shares
         self.mobility = (1.0 - rate) * self.mobility + rate * mobility
         return change
@@ -423,6 +465,44 @@ def compared(case: tuple[str, float, float, float, float], width: float, layers:
     return found | {name: round(getattr(warm, name) / getattr(cold, name), 5) for name in NAMES}
 
 
+SLOW = (
+    *(("FVA3", 100.0, 4.5, 120.0, QL) for QL in (1.2, 3.0)),
+    ("FVA3", 85.0, 8.0, 60.0, 0.3),
+    *(("ISO VG 32", 90.0, 8.0, 400.0, QL) for QL in (1.2, 5.0)),
+    ("ISO VG 22", 70.0, 6.0, 150.0, 2.0),
+    ("ISO VG 68", 105.0, 1.0, 60.0, 1.2),
+)
+"""Cases whose slow motion is solved."""
+
+SLOW_FILE = FILE.with_name("slow_points.toml")
+
+SLOW_WIDTH = 0.16
+
+
+def slow_motions() -> None:
+    """Write heated over isothermal film compliances and losses, and the compliance of dry contacts."""
+    head = (
+        "# Film compliance and loss compliance with temperatures, over those of isothermal films, and that of the dry\n"
+        "# contact over that of the isothermal film: `python -m tests.benchmarks.warm_point slow`.\n"
+        f"# Radius {RADIUS:g} m along the rolling, E' {MODULUS:g} Pa; cells of {SLOW_WIDTH:g} half-widths, 8 layers.\n"
+    )
+    SLOW_FILE.write_text(head, encoding="utf-8")
+    for case in SLOW:
+        point = WarmPoint(*case, width=SLOW_WIDTH)
+        cold, warm = point.slow_motion(heat=False), point.slow_motion(heat=True)
+        rows = dict(zip(("oil", "celsius", "kappa", "M", "QL"), case, strict=True)) | {
+            "speed": round(point.speed, 3),
+            "load": float(f"{point.given:.6g}"),
+            "film_compliance": round(warm[0] / cold[0], 4),
+            "loss_compliance": round(warm[1] / cold[1], 4),
+            "dry_compliance": round(point.dry * 2.0 / 3.0 / cold[0], 3),
+        }
+        text = "".join(f"{key} = {value!r}\n".replace("'", '"') for key, value in rows.items())
+        print(text, flush=True)
+        with SLOW_FILE.open("a", encoding="utf-8") as file:
+            file.write(f"\n[[points]]\n{text}")
+
+
 def written(width: float) -> None:
     """Solve all cases and write them, one after another."""
     start = time.process_time()
@@ -440,4 +520,7 @@ def written(width: float) -> None:
 
 
 if __name__ == "__main__":
-    written(float(sys.argv[1]) if len(sys.argv) > 1 else 0.11)
+    if sys.argv[1:] == ["slow"]:
+        slow_motions()
+    else:
+        written(float(sys.argv[1]) if len(sys.argv) > 1 else 0.11)

@@ -111,6 +111,29 @@ def test_heat_in_the_inlet_thins_films_of_every_kind(name, capsys, tmp_path, mon
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("name", ["NU308", "6208", "32208"])
+def test_stated_errors_are_in_the_bands_of_one_bearing(name, capsys, tmp_path, monkeypatch):
+    """Those of the rule of heat come to those of the law: 0.5 to 1 (1 - phi) of the loss, and the same of the film
+    compliance, which the damping has twice; phi is that of the printed film."""
+    monkeypatch.chdir(tmp_path)
+    ask = (name, "--load", "2 kN", "--speed", "3000 rpm", "--temperature", "60 degC", *KINDS.get(name, ()))
+    found = {}
+    for physics in ("isothermal", "inlet-heat"):
+        page = run(capsys, "bearing", *ask, "--physics", physics, "--bands", "all", "-o", f"{physics}.nc")[1]
+        head = next(line for line in page.splitlines() if "90 % of what" in line)
+        columns = [(head.index(word), head.index(word) + wide) for word, wide in (("numerics", 9), ("value", 5))]
+        rows = {line[4:11].strip(): line for line in page.splitlines() if re.match(r"    [KC] (along|axial)", line)}
+        wide = [[float(rows[key][slice(*at)]) for at in columns] for key in ("K along", "C along")]
+        sizes = [size / value for size, value in wide]
+        with xr.open_dataset(f"{physics}.nc") as data:
+            found[physics] = (*sizes, float(np.nanmin(data["central_film"].values)))
+    cold, warm = found["isothermal"], found["inlet-heat"]
+    thinner = 1.0 - warm[2] / cold[2]
+    assert thinner > 0.02 and warm[0] > cold[0] > 0.0
+    assert 0.4 * thinner < warm[1] - cold[1] < 2.0 * thinner
+
+
+@pytest.mark.slow
 @pytest.mark.usefixtures("fine_laws")
 @pytest.mark.parametrize("name", ["6208", "32208"])
 def test_bearings_with_axial_load_take_an_oil_layer(name, capsys, tmp_path, monkeypatch):

@@ -261,8 +261,6 @@ class LocatingElement(OnRings):
 
     def small_motions(self, displacement: FloatArray, operation: Operation) -> Condensed | None:
         """See `OnRings.small_motions`."""
-        if not self.varies:
-            return None
         at = self.settled(displacement, operation)
         found: Condensed | None = at.force.condensed(at.loads, at.conditions, self.relaxes)
         return found

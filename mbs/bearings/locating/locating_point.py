@@ -132,6 +132,7 @@ class LocatingPoint(RingPoint):
             pose=pose,
             stiffness=balance.element_stiffness[0],
             damping=balance.element_damping[0],
+            balance=balance,
             findings=(*force.gauge(at.loads).findings, *filter(None, [force.reach_of(at.loads.load[:2])])),
             **cls.own(at, Course(speeds, oil, temperature, films)),
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -99,7 +99,25 @@ def point_bands(
         return {name: np.asarray(row[name], dtype=np.float64) for name in names if name in row}
 
     centre = numbers(description, point)
-    return variable_bands(lambda changed, _: numbers(*again(changed)), centre, unknowns)
+    return variable_bands(lambda changed, _: numbers(*again(changed)), centre, unknowns, _numerics(point, centre))
+
+
+def _numerics(point: Any, centre: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+    """Sizes of what stated errors of laws and films leave open of the numbers of a point: of those that have any."""
+    from mbs.linearised.bands import law_bands  # with what linear analyses need
+
+    laws, found = law_bands(point.balance), {}
+    for (_, name, _), sizes in zip(_MATRICES, () if laws is None else laws.of_matrices()[:, 0], strict=False):
+        parts = np.abs(point.axes) @ sizes[:3, :3] @ np.abs(point.axes).T
+        for way, size in (("along", parts[0, 0]), ("across", parts[1, 1]), ("axial", sizes[0, 0])):
+            found[f"{name}_{way}"] = np.asarray(size)
+    errors = getattr(point, "film_errors", None)
+    if errors is not None:
+        found["central_film"], found["minimum_film"] = (
+            errors[:, 1] * centre["central_film"],
+            errors[:, 2] * centre["minimum_film"],
+        )
+    return {name: size for name, size in found.items() if name in centre}
 
 
 def point_lines(bands: dict[str, Band], scene: Scene, unknowns: Sequence[Unknown]) -> list[str]:
