@@ -208,8 +208,8 @@ class TestRule:
         assert np.all(wrong[loaded] < heat.loss_error[loaded])
 
     def test_lines_with_more_heat_than_it_has_seen(self):
-        """QL 5 and 8 of three oils: films within 3.5 %, offsets within 5.5 %; what it states holds all of them, of films,
-        losses and film compliances alike, and is less than what it would be without a rule."""
+        """QL 5 and 8 of three oils: films within 3.5 %, offsets within 5.5 %; what it states holds all of them, films,
+        losses and film compliances, and is less than what it would be without a rule."""
         lines = tomllib.loads((self.REFERENCES / "warm_lines.toml").read_text(encoding="utf-8"))["lines"]
         kept = [line for line in lines if line["QL"] > FITTED_LOADING]
         assert len(kept) == 18 and {line["QL"] for line in kept} == {5.0, LARGEST_LOADING}
@@ -228,7 +228,8 @@ class TestRule:
 
     def test_slow_motion_of_points_by_a_reference_of_its_own(self):
         """`tests.benchmarks.warm_point slow`: loss within 8 % up to QL = 3 where oil does not pass the sides, all
-        within what the rule states; the stiffness moves by less than 1 %. The reference is good to 12 % of the loss of a line."""
+        within what the rule states; the stiffness moves by less than 1 %. The reference is good to 12 % of the loss of
+        a line."""
         points = tomllib.loads((self.REFERENCES / "slow_points.toml").read_text(encoding="utf-8"))["points"]
         assert len(points) == 7
         for point in points:
