@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from ehdmaps.errors import InputError
 from ehdmaps.units import closest
-from mbs.model.elements import Sensor
+from mbs.model.elements import OnRings, Sensor
 from mbs.scene.assembly import Model
 from mbs.scene.scene import Scene
 from mbs.settings import CampbellSettings, RunUp
@@ -154,6 +154,14 @@ def excited_orders(model: Model, turns: float) -> list[tuple[float, str]]:
             # Rounded, for bearings that differ in the last bit only.
             found.setdefault(round(k * round(one.order, 9), 9), []).append(name)
     least = max(_LEAST_ORDER, _LEAST_PERIODS / turns) if turns > 0.0 else math.inf
+    for element in (entry.element for entry in model.system.elements if isinstance(entry.element, OnRings)):
+        if element.deviation_data is None:
+            continue
+        from mbs.bearings.deviations import named_orders  # with what few machines have
+
+        for name, order in named_orders(element.deviation_data).items():
+            known = found.setdefault(round(order, 9), []) if order >= least else []
+            known[:] = [f"{element.name} {name}", *(one for one in known if one != element.name)]
     for load in model.system.turning:
         if abs(load.order) >= least:
             found.setdefault(round(abs(load.order), 9), [])

@@ -26,6 +26,9 @@ On = Literal["inner", "outer", "elements"]
 
 PARTS: tuple[On, ...] = ("inner", "outer", "elements")
 
+HARMONICS = 2
+"""Multiples of the passing of elements with orders of their own, of bearings with deviations."""
+
 _PER_WAVE, _PER_SPALL, _FEWEST, _MOST = 64, 64, 1024, 2**17
 """Nodes of a table in its shortest wave and its shortest spall: cubics are right to 1e-7 of a wave; bounds of all."""
 
@@ -177,6 +180,26 @@ class DeviationData(Record):
         return added.copy()
 
 
+def named_orders(data: DeviationData) -> dict[str, float]:
+    """Orders at which a bearing with deviations excites, by their names: FTF, BSF, k BPFO, k BPFI, and a turn beside.
+
+    Parameters
+    ----------
+    data : DeviationData
+        The bearing.
+    """
+    cage, element = data.turns[0], data.turns[3]
+    places = data.given("places") / data.nodes * 2.0 * math.pi
+    count = np.unique(np.round(np.exp(1j * places), 9)).size
+    found = {"FTF": abs(cage), "2 BSF": 2.0 * abs(element)}
+    for name, ring in zip(("BPFI", "BPFO"), data.turns[1:3], strict=True):
+        for k in range(1, HARMONICS + 1):
+            passing = k * count * abs(cage - ring)
+            beside = {f"{k} {name} {way:+d}": passing + way * abs(ring) for way in (-1, 1) if ring}
+            found |= {f"{k} {name}": passing, **beside}
+    return {name: order for name, order in found.items() if order > 0.0}
+
+
 @functools.cache
 def _at() -> Callable[..., Any]:
     """Function in C that finds what deviations add."""
@@ -230,7 +253,7 @@ def deviation_data(
             if not np.any(found):
                 continue
             tables[elements == number if part == "elements" else slice(None), column] = len(rows)
-            rows.append(found * np.array([1.0, 2.0 * math.pi / nodes]))
+            rows.append(_cubics(found[:, 0], 2.0 * math.pi / nodes * found[:, 1]))
     sizes = np.zeros(int(elements.max()) + 1)
     sizes[: len(deviations.sizes)] = deviations.sizes
     return checked(DeviationData, "ehd_deviations")(
@@ -239,12 +262,18 @@ def deviation_data(
         start=start,
         turns=np.array(turns),
         tables=tables,
-        places=np.ascontiguousarray(places),
+        places=places * (nodes / (2.0 * math.pi)),
         sizes=0.5 * sizes[elements],
-        table=np.ascontiguousarray(rows).reshape(-1, 2),
+        table=np.ascontiguousarray(rows).reshape(-1, 4),
         added=np.zeros((places.size, 2, 2)),
         moment=np.full(2, math.nan),
     )
+
+
+def _cubics(value: FloatArray, slope: FloatArray) -> FloatArray:
+    """Cubics between nodes, (nodes, 4), by values and slopes a node, with the first node again at the end."""
+    change, left, right = np.diff(value), slope[:-1], slope[1:]
+    return np.stack([value[:-1], left, 3.0 * change - 2.0 * left - right, left + right - 2.0 * change], axis=1)
 
 
 def _hole(spall: Spall, radius: float, diameter: float, angle: FloatArray) -> FloatArray:

@@ -191,7 +191,8 @@ class _Bearing:
 
     def __init__(self, element: Any, displacement: FloatArray, operation: Operation) -> None:
         self._data, self._displacement, self._operation = element.deviation_data, displacement, operation
-        self._name, places = element.name, self._data.given("places")
+        self._places = self._data.given("places") * (2.0 * math.pi / self._data.nodes)
+        self._name, places = element.name, self._places
         self._cage, self._rings, self._own = self._data.turns[0], self._data.turns[1:3], self._data.turns[3]
         self._count = int(np.unique(np.round(np.cos(places) + 1j * np.sin(places), 9)).size)
         pitch = places.size / self._count  # of a row, as of what `passed` takes
@@ -231,7 +232,7 @@ class _Bearing:
     def _harmonics(self, table: int) -> tuple[IntArray, ComplexArray]:
         """Numbers and amplitudes of the waves of a table, Re[c exp(i n angle)], those that matter."""
         nodes = self._data.nodes
-        values = self._data.given("table")[table * (nodes + 1) : (table + 1) * (nodes + 1) - 1, 0]
+        values = self._data.given("table")[table * nodes : (table + 1) * nodes, 0]
         found = 2.0 * np.fft.rfft(values) / nodes
         found[0] *= 0.5
         size = np.abs(found[:-1])
@@ -272,7 +273,7 @@ class _Bearing:
 
     def _add_element(self, j: int, n: int, by_order: ComplexArray, source: str) -> None:
         """Add n waves of an element."""
-        angle = self._data.start + self._data.given("places")[j]
+        angle = self._data.start + self._places[j]
         for q in range(-self._most, self._most + 1):
             order, way = q * self._cage + n * self._own, 1 if n else (1 if q > 0 else -1)
             own = f"{n} BSF " if n else ""

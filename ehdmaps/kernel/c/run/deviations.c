@@ -2,17 +2,20 @@
  * Deviations of a bearing from its form; see deviations.h
  * ------------------------------------------------------------------------------------------------------------------ */
 
-/* Add the value of a table at an angle, and its rate by that of the angle, to out (2,). */
-static void add_deviation(const ehd_deviations *of, int64_t table, double angle, double rate, double *out) {
-    const double per_turn = (double)of->nodes / 6.283185307179586476925;
-    if (table < 0) return;
-    const double turns = angle / 6.283185307179586476925, place = (turns - floor(turns)) * (double)of->nodes;
-    const int64_t cell = place < (double)of->nodes ? (int64_t)place : of->nodes - 1;
-    const double t = place - (double)cell, r = 1.0 - t;
-    const double *low = of->table + 2 * (table * (of->nodes + 1) + cell), *high = low + 2;
-    const double change = high[0] - low[0];
-    out[0] += low[0] + t * t * (3.0 - 2.0 * t) * change + t * r * (low[1] * r - high[1] * t);
-    out[1] += rate * per_turn * (6.0 * t * r * change + low[1] * r * (r - 2.0 * t) + high[1] * t * (t - 2.0 * r));
+#define DEVIATIONS_TURN 6.283185307179586476925
+
+/* Place of an angle on a table, within 0 to nodes. */
+static double deviation_place(const ehd_deviations *of, double angle) {
+    const double turns = angle / DEVIATIONS_TURN;
+    return (turns - floor(turns)) * (double)of->nodes;
+}
+
+/* Add the value of a table at a place, which may be up to two turns, and its change by a node times rate, to out (2,). */
+EHD_INLINE void add_deviation(const ehd_deviations *of, int64_t table, double place, double rate, double *out) {
+    const int64_t cell = (int64_t)place;
+    const double t = place - (double)cell, *c = of->table + 4 * (table * of->nodes + (cell & (of->nodes - 1)));
+    out[0] += c[0] + t * (c[1] + t * (c[2] + t * c[3]));
+    out[1] += rate * (c[1] + t * (2.0 * c[2] + 3.0 * t * c[3]));
 }
 
 const double *ehd_deviations_at(const ehd_deviations *of, double angle, double speed) {
@@ -20,17 +23,18 @@ const double *ehd_deviations_at(const ehd_deviations *of, double angle, double s
     if (of->moment[0] == angle && of->moment[1] == speed) return of->added;
     of->moment[0] = angle;
     of->moment[1] = speed;
-    const double *turns = of->turns, spin = turns[3] * angle;
-    for (int64_t j = 0; j < of->elements; j++) {
-        const int64_t *tables = of->tables + 3 * j;
-        const double place = of->start + of->places[j] + turns[0] * angle;
-        for (int side = 0; side < 2; side++) {
+    const double *turns = of->turns, per_angle = (double)of->nodes / DEVIATIONS_TURN;
+    const double spin = deviation_place(of, turns[3] * angle), half = 0.5 * (double)of->nodes;
+    for (int side = 0; side < 2; side++) {
+        const double apart = turns[0] - turns[1 + side], rate = per_angle * apart * speed;
+        const double ring = deviation_place(of, of->start + apart * angle), own = side ? spin : spin + half;
+        for (int64_t j = 0; j < of->elements; j++) {
+            const int64_t *tables = of->tables + 3 * j;
             double *out = of->added + 2 * (2 * j + side);
-            const double ring = turns[1 + side], half = side ? 0.0 : 3.14159265358979323846;
             out[0] = of->sizes[j];
             out[1] = 0.0;
-            add_deviation(of, tables[side], place - ring * angle, (turns[0] - ring) * speed, out);
-            add_deviation(of, tables[2], spin + half, turns[3] * speed, out);
+            if (tables[side] >= 0) add_deviation(of, tables[side], ring + of->places[j], rate, out);
+            if (tables[2] >= 0) add_deviation(of, tables[2], own, per_angle * turns[3] * speed, out);
         }
     }
     return of->added;

@@ -15,13 +15,13 @@
 
 /* Deviations of a bearing. */
 typedef struct ehd_deviations {
-    int64_t elements, nodes;  /* rolling elements, none of a bearing without deviations; nodes of a turn */
+    int64_t elements, nodes;  /* rolling elements, none of a bearing without deviations; nodes of a turn, a power of 2 */
     double start;             /* angle of the cage where that of the system is zero [rad] */
     double turns[4];          /* angles of cage, inner ring, outer ring, and of elements in the cage, by that of the system */
     const int64_t *tables;    /* (elements, 3): table of the inner ring, of the outer ring, of the element; < 0 none */
-    const double *places;     /* (elements): angles in the cage [rad] */
+    const double *places;     /* (elements): angles in the cage, in nodes, from 0 to nodes */
     const double *sizes;      /* (elements): half of what the diameter is larger [m] */
-    const double *table;      /* (tables, nodes + 1, 2): approach [m], and its change to the next node by its slope [m] */
+    const double *table;      /* (tables, nodes, 4): cubics from each node to the next one [m] */
     double *added;            /* (elements, 2, 2): approach [m] and its rate [m/s] of both contacts, written */
     double *moment;           /* (2): angle [rad] and speed [rad/s] of the system for which these are */
 } ehd_deviations;
