@@ -22,11 +22,11 @@ scene file          `scene`: reader -> specs -> scene -> assembly; `kinds`: the 
 the system          `model`: bodies, elements, what is prescribed; the system and its equilibrium
 what bodies are     `flexible` (beams, finite elements, reduction)
 what connects them  `bearings` (the bearing force; `life`, `passes`, `electrics` of a bearing), `gears`
-linear              `linearised` (modes, responses, over speed); `modal` (modes of hammer hits);
+linear              `linearised` (modes, responses, excitation by bearings); `modal` (modes of hammer hits);
                     `identification` (unknowns of a machine from what is measured)
 in time             `transient` (method, runs in C); `spectral` (levels over speed and order); `timedata` (files)
 analyses            `analyses`: statics, modes, lsa, sweep, runup, campbell, hammer; `planning`: what a scene requires;
-                    `library`: what needs no model
+                    `library`: what needs no model; `vibration`: a bearing on a test spindle
 laboratory          `laboratory`: tradeoff, variants, stability
 for people          `output` (datasets, figures), `report` (a page to send), `commands`, `cli`; `systems`: scenes
 ==================  ====================================================================================

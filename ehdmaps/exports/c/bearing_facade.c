@@ -24,6 +24,7 @@ int ehd_bearing_make(ehd_bearing *bearing, double clearance, int count, const do
     if (!bearing || count < 1 || count > EHD_MOST_SLICES || !is_finite(clearance)) return EHD_BAD_ARGUMENT;
     bearing->slices = count;
     bearing->clearance = clearance;
+    bearing->added = NULL;
     bearing->slice_length = EHD_ROLLER_LENGTH / count;
     bearing->least_profile = DBL_MAX;
     bearing->most_profile = -DBL_MAX;
@@ -55,6 +56,7 @@ static ehd_cylinder shape_of(const ehd_bearing *bearing) {
         .least_profile = bearing->least_profile, .most_profile = bearing->most_profile,
         .position = bearing->position, .profile = bearing->profile, .cosine = COSINES, .sine = SINES,
         .row = ROW_PLACES,
+        .added = bearing->added,
     };
     return shape;
 }

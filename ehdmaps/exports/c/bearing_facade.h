@@ -16,6 +16,8 @@ typedef struct ehd_bearing {
     double clearance, slice_length, least_profile, most_profile; /* [m] */
     double position[EHD_MOST_SLICES + 1];                        /* middles of the slices along the roller [m] */
     double profile[EHD_MOST_SLICES + 1];                         /* twice the depth of the roller's profile there [m] */
+    const double *added; /* (EHD_ROLLERS, 2, 2), of the caller, or null: approach [m] and its rate [m/s] that deviations from
+                          * the form add to each roller at the inner and the outer ring */
 } ehd_bearing;
 
 /* The law at one speed, temperature and centrifugal load, as a table that a bearing reads in nanoseconds; made by

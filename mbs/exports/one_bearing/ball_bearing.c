@@ -14,6 +14,7 @@ int ehd_bearing_make(ehd_bearing *bearing, double clearance, int mirrored) {
     if (!bearing || !(fabs(clearance) < apart)) return EHD_BAD_ARGUMENT;
     bearing->clearance = clearance;
     bearing->mirrored = mirrored != 0;
+    bearing->added = NULL;
     bearing->axial = (mirrored ? -1.0 : 1.0) * GROOVE_DISTANCE * sin(EHD_CONTACT_ANGLE);
     bearing->radial = THRUST ? 0.0 : apart - 0.5 * (clearance - axial);
     /* the inner groove's centre at the free contact angle */
@@ -66,11 +67,13 @@ static int bearing_at(const ehd_bearing *bearing, const ehd_law *law, ehd_balls 
     const ehd_pair_law inner = pair_of(&law->inner), outer = pair_of(&law->outer);
     const double rest = balls->rest = ehd_pair_approach(&outer, CENTRIFUGAL * nominal * nominal, balls->rest);
     const int still = DRY && rest < NEGLIGIBLE;
+    double by_rates[EHD_PAIR_BY_RATES];
     const ehd_ball_data data = {
         {bearing->axial, bearing->radial, bearing->arm, INNER_ARM, OUTER_ARM, bearing->most_travel, bearing->most_tilt},
         {still ? 0.0 : inner_speed, still ? 0.0 : outer_speed, still || !cage ? NAN : *cage,
          EHD_BALL_DIAMETER / EHD_PITCH_DIAMETER, CENTRIFUGAL, GYROSCOPIC, BALL_AXIS},
-        cage_angle, rest, EHD_BALLS, bearing->cosine, bearing->sine, bearing->row[0], held, inner, outer};
+        cage_angle, rest, EHD_BALLS, bearing->cosine, bearing->sine, bearing->row[0], held, inner, outer,
+        bearing->added, by_rates};
     ehd_ball_start *start = (ehd_ball_start *)balls->start;
     ehd_ball_found found[EHD_BALLS];
     const int loaded =
@@ -87,6 +90,7 @@ static int bearing_at(const ehd_bearing *bearing, const ehd_law *law, ehd_balls 
     }
     for (int i = 0; velocity && i < 6; i++)
         for (int k = 0; k < 6; k++) result->force[i] -= result->damping[i][k] * velocity[k];
+    for (int i = 0; bearing->added && i < 6; i++) result->force[i] += by_rates[i];
     result->cage_speed = ehd_ball_mean_speed(EHD_BALLS, found, nominal);
     return law->status | (largest > law->highest ? EHD_ABOVE_LOAD : EHD_OK);
 }

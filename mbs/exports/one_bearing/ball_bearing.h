@@ -32,6 +32,8 @@ typedef struct ehd_bearing {
     double most_travel, most_tilt;           /* largest accepted displacement [m] and tilt [rad] */
     double cosine[EHD_BALLS], sine[EHD_BALLS]; /* directions of the balls in the cage */
     double row[EHD_BALLS][4]; /* way, place [m] and shift [m] of their rows; balls to their other contacts */
+    const double *added; /* (EHD_BALLS, 2, 2), of the caller, or null: approach [m] and its rate [m/s] that deviations from
+                          * the form add to the inner and the outer contact of each ball */
 } ehd_bearing;
 
 /* A ball in balance. */

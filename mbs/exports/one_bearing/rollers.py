@@ -76,7 +76,7 @@ def _data(force: TaperedForce) -> str:
         + "/* Of each rib normal, lever, play, coefficient, and 1 on the outer ring. */\n"
         + array("RIB", ribs)
         + f"static const ehd_taper_data DATA = {{\n    {sizes},\n    {{{pairs}}},\n    {', '.join(numbers)},\n"
-        + "    RIB, LEVER, PROFILE, NULL, NULL};\n"
+        + "    RIB, LEVER, PROFILE, NULL, NULL, NULL, NULL};\n"
     )
 
 

@@ -12,6 +12,7 @@ int ehd_bearing_make(ehd_bearing *bearing, double play, int mirrored) {
     bearing->play = TAPERED ? 0.0 : 0.25 * play;
     bearing->offset = TAPERED ? play : 0.0;
     bearing->mirrored = mirrored != 0;
+    bearing->added = NULL;
     for (int j = 0; j < EHD_ROLLERS; j++) {
         bearing->cosine[j] = cos(two_pi * j / EHD_ROLLERS);
         bearing->sine[j] = sin(two_pi * j / EHD_ROLLERS);
@@ -60,7 +61,10 @@ static int bearing_at(const ehd_bearing *bearing, const ehd_law *law, ehd_roller
     const double spin = ROLLER_SPEED * (inner_speed - outer_speed) + cage * AXIS[0];
     const double loads[3] = {0.0, CENTRIFUGAL * cage * cage,
                              cage * AXIS[1] * (INERTIA[0] * spin - INERTIA[1] * cage * AXIS[0])};
-    const ehd_taper_data data = data_of(bearing);
+    double by_rates[EHD_PAIR_BY_RATES];
+    ehd_taper_data data = data_of(bearing);
+    data.added = bearing->added;
+    data.by_rates = by_rates;
     const ehd_pair_law pair[2] = {pair_of(&law->inner), pair_of(&law->outer)};
     ehd_taper_roller *own = (ehd_taper_roller *)rollers->own;
     ehd_taper_answer answer;
@@ -72,6 +76,7 @@ static int bearing_at(const ehd_bearing *bearing, const ehd_law *law, ehd_roller
     for (int j = 0; j < EHD_ROLLERS; j++) tell(&own[j], &rollers->roller[j]);
     for (int i = 0; i < 6; i++) {
         result->force[i] = sign[i] * answer.force[i];
+        if (data.added) result->force[i] += sign[i] * by_rates[i];
         for (int k = 0; k < 6; k++) {
             result->stiffness[i][k] = sign[i] * sign[k] * answer.stiffness[i][k];
             result->damping[i][k] = sign[i] * sign[k] * answer.damping[i][k];

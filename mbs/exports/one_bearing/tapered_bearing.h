@@ -28,6 +28,8 @@ typedef struct ehd_bearing {
     double play, offset; /* of each raceway, and along x [m] */
     int mirrored;
     double cosine[EHD_ROLLERS], sine[EHD_ROLLERS]; /* directions of the rollers in the cage */
+    const double *added; /* (EHD_ROLLERS, 2, 2), of the caller, or null: approach [m] and its rate [m/s] that deviations from
+                          * the form add to the lines of each roller with cone and cup */
 } ehd_bearing;
 
 /* A roller in balance, to be read. Of a mirrored bearing all is that of the bearing in its mirror, x and turns the other way. */
@@ -46,7 +48,7 @@ typedef struct ehd_roller {
  * by what Newton's method leaves, 1e-13 of the load. */
 typedef struct ehd_rollers {
     ehd_roller roller[EHD_ROLLERS];
-    double own[EHD_ROLLERS][49]; /* what the next call starts from */
+    double own[EHD_ROLLERS][51]; /* what the next call starts from */
 #if EHD_MEMORY
     double held[EHD_ROLLERS][2][8][EHD_SLICES]; /* what the films of the slices of cone and cup hold over a step */
 #endif

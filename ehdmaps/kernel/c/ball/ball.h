@@ -64,5 +64,5 @@ typedef struct ehd_ball_data {
     const double *held; /* (balls, 2, EHD_BALL_MEMORY): memory of contacts over a step, or null, see pair_law.h */
     ehd_pair_law inner, outer;
     const double *added; /* (balls, 2, 2): what deviations add to both contacts, see ../run/deviations.h; null: none */
-    double *by_rates;    /* (8,): what the rates of that do, see EHD_PAIR_BY_RATES; null where nothing is added */
+    double *by_rates;    /* (8,): what the rates of that do, see EHD_PAIR_BY_RATES; of no use where nothing is added */
 } ehd_ball_data;
