@@ -31,6 +31,7 @@ waviness = [{ on = "inner", waves = [2, 500], amplitude = "0.02 um", seed = 1 },
 spall = [{ on = "outer", length = "0.5 mm", depth = "20 um" }]
 """
 FILMS, DRY = "table", "hertz:1.25e-5 s"
+MEASURED = "cylindrical", "rollers as bodies", "deep groove", "tapered"
 NAMES = {FILMS: "films", DRY: "dry"}
 
 
@@ -65,9 +66,10 @@ def spall(figure: Figure) -> None:
         axes.plot(frequency[shown], 1e6 * amplitude[shown], label=NAMES[case[2]], linewidth=0.8)
         place = int(np.argmax(amplitude[frequency > 20.0])) + int(np.sum(frequency <= 20.0))
         level = 1e6 * band_levels(signal, found.rate)[2]
+        order = 2.0 * np.pi * frequency[place] / SPEED
         print(
-            f"spall of the outer ring, {NAMES[case[2]]}: largest line of the envelope at {frequency[place]:.1f} Hz, order "
-            f"{2.0 * np.pi * frequency[place] / SPEED:.4f}, {1e6 * amplitude[place]:.3g} um/s; high band {level:.3g} um/s"
+            f"spall of the outer ring, {NAMES[case[2]]}: largest line of the envelope at {frequency[place]:.1f} Hz, "
+            f"order {order:.4g}, {1e6 * amplitude[place]:.3g} um/s; high band {level:.3g} um/s"
         )
     axes.set_xlabel("frequency [Hz]")
     axes.set_ylabel("envelope, 2 to 10 kHz [um/s]")
@@ -90,9 +92,8 @@ def cost() -> None:
                     began, settings = time.process_time(), Settings(step=2e-5, sample=1e-3)
                     run(model.system, SpeedProfile.constant(157.0), 0.1, settings, displacement=start)
                     best[index] = min(best[index], time.process_time() - began)
-            print(
-                f"step of {kind.name}, {NAMES[law]}: {200.0 * best[0]:.1f} us, with waviness {best[1] / best[0]:.2f} times"
-            )
+            ratio = best[1] / best[0]
+            print(f"step of {kind.name}, {NAMES[law]}: {200.0 * best[0]:.1f} us, with waviness {ratio:.2f} times")
 
 
 def main() -> None:

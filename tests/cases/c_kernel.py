@@ -85,6 +85,12 @@ class Kernel:
         given = None if profile is None else np.ascontiguousarray(profile).ctypes.data
         return int(self._library.ehd_bearing_make(self._room["bearing"], clearance, slices, given))
 
+    def deviate(self, added: FloatArray) -> None:
+        """Add approaches to the rollers (Z, 2, 2), by the pointer at the end of the bearing; they are kept."""
+        self.added = np.ascontiguousarray(added)
+        room = self._room["bearing"]
+        _P.from_buffer(room, len(room) - ctypes.sizeof(_P)).value = self.added.ctypes.data
+
     def prepare(self, u: float, T: float, q: float = 0.0) -> int:
         """Prepare the law for the bearing."""
         return int(self._library.ehd_prepare(self._room["prepared"], u, T, q))

@@ -174,6 +174,24 @@ def test_level(centrifugal, law, small_map, slices):
             assert_bearing(centrifugal, force, rng, size, u, T, q, level=True)
 
 
+def test_rollers_that_are_larger_are_felt_as_less_clearance(centrifugal, law, small_map):
+    """1 um at one ring and 0.5 um at the other of every roller are 3 um of the diametral clearance, to round-off."""
+    u, T = (0.5 * sum(ends) for ends in (law.speed_range, law.temperature_range))
+    pose, still = np.array([0.0, 3e-6, -4e-6, 0.0, 1e-5, 0.0]), np.zeros(6)
+    answers = []
+    for clearance, approaches in ((4e-6, (1e-6, 0.5e-6)), (1e-6, (0.0, 0.0))):
+        assert centrifugal.make(clearance, 5) == 0
+        added = np.zeros((open_map(small_map).bearing.rollers, 2, 2))
+        added[..., 0] = approaches
+        centrifugal.deviate(added)
+        centrifugal.prepare(u, T)
+        status, found = centrifugal.force(pose, still, 0.3)
+        assert status == 0
+        answers.append(found)
+    assert np.abs(answers[0][0]).max() > 1.0
+    np.testing.assert_allclose(answers[0], answers[1], rtol=1e-9, atol=1e-9 * np.abs(answers[1]).max())
+
+
 def test_beyond_the_cells(centrifugal, law, small_map):
     """Rollers as far in and out as a pose may be: farther than the table of a prepared law reaches."""
     force, rng = BearingForce(Bearing(open_map(small_map).bearing, slices=8), law), np.random.default_rng(5)
