@@ -232,4 +232,4 @@ def envelope_spectrum(signal: FloatArray, rate: float, band: tuple[float, float]
     envelope = np.abs(np.fft.ifft(spectrum))
     window = scipy.signal.windows.hann(signal.size, sym=False)
     amplitude = 2.0 * np.abs(np.fft.rfft((envelope - envelope.mean()) * window)) / np.sum(window)
-    return np.fft.rfftfreq(signal.size, 1.0 / rate), amplitude
+    return np.asarray(np.fft.rfftfreq(signal.size, 1.0 / rate), dtype=np.float64), amplitude

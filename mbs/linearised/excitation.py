@@ -195,7 +195,8 @@ class _Bearing:
         self._name, places = element.name, self._places
         self._cage, self._rings, self._own = self._data.turns[0], self._data.turns[1:3], self._data.turns[3]
         self._count = int(np.unique(np.round(np.cos(places) + 1j * np.sin(places), 9)).size)
-        pitch = places.size / self._count  # of a row, as of what `passed` takes
+        # the pitch of a row, by what `passed` takes for it
+        pitch = 2.0 * math.pi / self._count / abs(element.passed(1.0).start_angle - element.start_angle)
         self._passed = [element.passed(pitch * m / POSITIONS) for m in range(POSITIONS)]
         turn = math.copysign(2.0 * math.pi / self._count, self._cage) * np.arange(POSITIONS) / POSITIONS
         start = self._data.start + self._cage * operation.angle
