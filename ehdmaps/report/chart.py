@@ -551,7 +551,7 @@ def _notes(chart: Chart) -> list[Markup]:
                 break
             if all(x - width > right or x < left or abs(y - row) > _TALL for left, right, row in taken):
                 taken.append((x - width, x, y))
-                parts.append(tag("text", curve.note, x=f"{x:.1f}", y=f"{y:.1f}", text_anchor="end"))
+                parts.append(tag("text", curve.note, x=f"{x:.1f}", y=f"{y:.1f}", text_anchor="end", class_="note"))
                 break
     return parts
 

@@ -59,6 +59,7 @@ def sketch(model: Model) -> Markup:
     taken: list[tuple[float, float, float, float]] = []
     for place, name in names:
         x, y = at(np.array([place]))[0].tolist()
+        y += 0.9 * _LINE
         size = 6.2 * len(name)
         while any(abs(x - a) < 0.5 * (size + b) and abs(y - c) < d for a, c, b, d in taken):
             y += _LINE
@@ -204,7 +205,9 @@ def _names(model: Model) -> Iterator[tuple[tuple[float, float], str]]:
     axis = _across(model)
     for bearing in model.scene.of_all_kinds:
         x, y = _seen(model.system, bearing.inner if bearing.inner != GROUND else bearing.outer, axis)
-        yield (x, y - 0.62 * bearing.geometry.pitch_diameter), bearing.name
+        geometry: Any = bearing.geometry
+        size = getattr(geometry, "ball_diameter", None) or geometry.roller_diameter
+        yield (x, y - 0.5 * (geometry.pitch_diameter + size)), bearing.name
     for spec in model.scene.bodies:
         if isinstance(spec, RigidSpec):
             yield (spec.position[0], spec.position[axis]), f"● {spec.name}"

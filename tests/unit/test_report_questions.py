@@ -141,7 +141,9 @@ def test_texts_of_curves_stand_apart():
     chart = Chart(
         "c", "t", "", linear_axis("x", "", x), linear_axis("y", "", np.array([0.0, 8.0])), x, curves, frame=WIDE
     )
-    found = re.findall(r'<text x="([0-9.]+)" y="([0-9.]+)" text-anchor="end">(BPFO[^<]*)<', str(drawing(chart)))
+    found = re.findall(
+        r'<text x="([0-9.]+)" y="([0-9.]+)" text-anchor="end" class="note">(BPFO[^<]*)<', str(drawing(chart))
+    )
     assert len(found) == 3
     boxes = [(float(right) - 6.2 * len(words), float(right), float(y)) for right, y, words in found]
     for i, (left, right, y) in enumerate(boxes):
