@@ -33,6 +33,7 @@ def share(config: pytest.Config) -> None:
     patch.setenv(SHARED, folder.name)
     patch.setenv("EHDMAPS_REDUCED", str(Path(folder.name) / "reduced"))
     patch.setenv("EHDMAPS_LAW_TABLES", str(Path(folder.name) / "laws"))
+    patch.setenv("EHDMAPS_LAWS", "off")  # tests make laws of coarse tables and of fine ones
     config.add_cleanup(folder.cleanup)
     config.add_cleanup(patch.undo)
 

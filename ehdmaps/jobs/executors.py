@@ -16,19 +16,15 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import os
-import pickle
 from collections import deque
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, TypeVar
 
 from ehdmaps.errors import InputError
 from ehdmaps.extras import needs
-from ehdmaps.maps.kernels.kept_tables import key_of
-from ehdmaps.outputs import cache_folder, new_part, others_may_write, own_folder
+from ehdmaps.maps.kernels.kept_tables import KeptPickles, key_of
 from ehdmaps.workers import available_cores
 
 ALLOWED = "dask:ADDRESS of a scheduler, such as dask:tcp://head:8786, executorlib:local, executorlib:slurm, mpi"
@@ -40,7 +36,7 @@ MOST_OUT = 2000
 """Tasks handed out, of an executor of which nobody knows how many workers it has."""
 
 VARIABLE = "EHDMAPS_CASES"
-"""Environment variable that names the folder of `KeptResults`; ``off`` keeps nothing."""
+"""Environment variable that names the folder of `kept_results`; ``off`` keeps nothing."""
 
 MOST_KEPT = 200
 """Results that are kept; the oldest ones make room."""
@@ -140,11 +136,8 @@ def handed_out(
             future.cancel()
 
 
-class KeptResults:
-    """Results that an engine computed, by their index, until all of a command are there: a killed one goes on.
-
-    Each is kept under a hash over the item, what is done with it, and all code of this distribution, in the user's
-    folder for caches. What is damaged, or what others may have written, is computed again.
+def kept_results(work: Any, items: Sequence[Any]) -> KeptPickles:
+    """Results that an engine computed, kept by their index until all of a command are there: a killed one goes on.
 
     Parameters
     ----------
@@ -153,63 +146,7 @@ class KeptResults:
     items : sequence
         What it is done with; the result of one that cannot be pickled is not kept.
     """
-
-    def __init__(self, work: Any, items: Sequence[Any]) -> None:
-        self._paths: list[Path | None] = [None] * len(items)
-        with contextlib.suppress(RuntimeError):  # no home folder
-            if os.environ.get(VARIABLE) != "off":
-                folder = cache_folder("cases", VARIABLE, os.environ)
-                keys = [key_of(work, item) for item in items]
-                self._paths = [folder / f"{key}.pickle" if key else None for key in keys]
-
-    def get(self, index: int) -> Any:
-        """Result of an item; None where there is none that is whole.
-
-        Parameters
-        ----------
-        index : int
-            Number of the item.
-        """
-        path = self._paths[index]
-        if path is None or not path.is_file() or others_may_write(path.parent) or others_may_write(path):
-            return None
-        try:
-            return pickle.loads(path.read_bytes())
-        except Exception:  # a damaged pickle raises anything
-            return None
-
-    def put(self, index: int, result: Any) -> None:
-        """Keep the result of an item; on a full disk, and in a folder that cannot be written, it is not kept.
-
-        Parameters
-        ----------
-        index : int
-            Number of the item.
-        result : object
-            Result of it; picklable.
-        """
-        path = self._paths[index]
-        if path is None:
-            return
-        with contextlib.suppress(OSError):
-            own_folder(path.parent)
-            part, descriptor = new_part(path)
-            try:
-                with os.fdopen(descriptor, "wb") as file:
-                    pickle.dump(result, file, protocol=5)
-                part.replace(path)
-            finally:
-                part.unlink(missing_ok=True)
-            kept = sorted(path.parent.glob("*.pickle"), key=lambda file: file.stat().st_mtime)
-            for old in kept[: max(0, len(kept) - MOST_KEPT)]:
-                old.unlink(missing_ok=True)
-
-    def clear(self) -> None:
-        """Remove the results: all are there."""
-        for path in self._paths:
-            if path is not None:
-                with contextlib.suppress(OSError):
-                    path.unlink(missing_ok=True)
+    return KeptPickles("cases", VARIABLE, MOST_KEPT, [key_of(work, item) for item in items])
 
 
 def executor_problem(text: str) -> str:

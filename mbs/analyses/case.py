@@ -189,10 +189,10 @@ def _by_executor(
     label: Callable[[int], str],
 ) -> Iterator[Result | Failed]:
     """Compute all cases by an executor, but those that an earlier run has kept."""
-    from ehdmaps.jobs.executors import KeptResults, Lost, handed_out
+    from ehdmaps.jobs.executors import Lost, handed_out, kept_results
 
     found: dict[int, Result | Failed] = {}
-    kept, whole = KeptResults(work, items), True
+    kept, whole = kept_results(work, items), True
     for index in range(len(items)):
         if (known := kept.get(index)) is not None:
             found[index] = known

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import ehdmaps
+from ehdmaps.jobs.make import table_law
 from ehdmaps.maps.kernels import kept_tables
 from ehdmaps.maps.kernels.law_in_c import ABOVE_SPEED, NOT_FINITE, LawAddress
 from ehdmaps.maps.law import ContactLaw
@@ -35,7 +36,7 @@ def same_bits(law, other):
         assert np.asarray(one).tobytes() == np.asarray(two).tobytes()
 
 
-def refuse(*arguments):
+def refuse(*arguments, **more):
     raise AssertionError("a table was made again")
 
 
@@ -133,3 +134,28 @@ def test_other_programs_call_a_law_by_its_address(kind):
     assert call(at.data, np.nan, 0.0, 1.0, 330.0, 0.0, room.ctypes.data, force.ctypes.data) & NOT_FINITE
     assert np.all(np.isnan(force))
     assert isinstance(call, ctypes._CFuncPtr)
+
+
+def test_a_whole_law_is_read_again(tmp_path, monkeypatch):
+    """What another process reads is the same law; counts are its own."""
+    monkeypatch.setenv(table_law.VARIABLE, str(tmp_path / "whole"))
+    asked = ("NU308", "FVA3", "inner", (1e3, 1e5), (0.5, 2.0), (330.0, 340.0))
+    first = ehdmaps.law(*asked)
+    (path,) = (tmp_path / "whole").glob("*.pickle")
+    second = ehdmaps.law(*asked)
+    assert second is not first and second.table is first.table  # of this process
+    monkeypatch.setattr(table_law, "_laws", {})
+    monkeypatch.setattr(table_law, "_made", {})
+    with monkeypatch.context() as patch:
+        patch.setattr(table_law, "table_map", refuse)
+        read = ehdmaps.law(*asked)
+        same_bits(read, first)
+        assert read(2e-6, 1e-4, 1.0, 335.0) == first(2e-6, 1e-4, 1.0, 335.0)
+        patch.setattr(table_law, "_laws", {})
+        path.write_bytes(path.read_bytes()[:-100])
+        with pytest.raises(AssertionError, match="made again"):
+            ehdmaps.law(*asked)
+    same_bits(ehdmaps.law(*asked), first)
+    with pytest.raises(AssertionError, match="made again"):
+        monkeypatch.setattr(table_law, "table_map", refuse)
+        ehdmaps.law(*asked[:2], "outer", *asked[3:])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -18,7 +20,7 @@ from ehdmaps.jobs.make.table_films import table_films, unserved
 from ehdmaps.jobs.make.tasks import of_groups
 from ehdmaps.jobs.solvers import TABLE
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.maps.kernels.kept_tables import keeping, key_of
+from ehdmaps.maps.kernels.kept_tables import KeptPickles, keeping, key_of
 from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry
@@ -44,6 +46,15 @@ LOADS, SPEEDS, TEMPERATURES = (100.0, 1e6), (0.05, 10.0), (293.15, 393.15)
 _MOST_MADE = 8
 _made: dict[str, EHDMap] = {}
 """The last maps of this process by what was asked for, with the laws that were made of them."""
+
+VARIABLE = "EHDMAPS_LAWS"
+"""Environment variable that names the folder of laws that were made before; ``off`` keeps none."""
+
+_MOST_KEPT = 20
+"""Laws that are kept there, of some 7 MB each."""
+
+_laws: dict[str, ContactLaw] = {}
+"""Laws of this process that are kept, by what was asked for."""
 
 _POINTS = (25, 12, 6)
 """Loads, speeds and temperatures of a map in memory: for its error estimates, as laws read the film table."""
@@ -245,6 +256,8 @@ def law(
 ) -> ContactLaw | PointLaw:
     """Make a contact law without a map, in about a second; the same one again in a millisecond.
 
+    It is kept in the user's folder for caches: another process reads it there in some 50 ms.
+
     Films come from the film table; where it does not serve, all are solved. The law of a ball bearing has the load of
     one ball [N], and reads the film table of points alone: of what follows it takes kind, material, supply, surface and
     heat.
@@ -288,7 +301,7 @@ def law(
     """
     if isinstance(of, str):
         of = balls_of(of) or designated(of)
-    lubricant = Lubricant.named(lubricant) if isinstance(lubricant, str) else lubricant
+    lubricant = oil = Lubricant.named(lubricant) if isinstance(lubricant, str) else lubricant
     if isinstance(of, BallGeometry):
         if solver is not None:
             raise InputError("contact law of a ball: got a solver; allowed: none, films are read from the table")
@@ -296,19 +309,43 @@ def law(
 
         conditions = FilmConditions(heat_in_force(inlet_heat, lubricant), supply or FLOODED, surface or SMOOTH)
         return PointLaw(of, lubricant, "series" if kind is None else kind, material, conditions)
+    source: BearingGeometry | LineContact = of
     allowed: tuple[LawKind, ...] = ("series", "inner", "outer") if isinstance(of, BearingGeometry) else ("line",)
     chosen = kind or allowed[0]
     if chosen not in allowed:
         raise InputError(f"contact law, kind: got {kind!r}; allowed: {', '.join(allowed)}")
-    emap = table_map(
-        of,
-        lubricant,
-        loads,
-        entrainment_speeds,
-        temperatures,
-        structural_law=structural_law,
-        material=material,
-        solver=solver,
-        inlet_heat=inlet_heat,
-    )
-    return emap.law(chosen, outside, supply=supply, surface=surface)
+
+    def made() -> ContactLaw:
+        emap = table_map(
+            source,
+            oil,
+            loads,
+            entrainment_speeds,
+            temperatures,
+            structural_law=structural_law,
+            material=material,
+            solver=solver,
+            inlet_heat=inlet_heat,
+        )
+        return emap.law(chosen, outside, supply=supply, surface=surface)
+
+    ranges, states = (loads, entrainment_speeds, temperatures), (outside, supply, surface, inlet_heat)
+    asked = of, lubricant, chosen, ranges, states, structural_law, material
+    return made() if solver is not None else _kept(asked, made)
+
+
+def _kept(asked: tuple[Any, ...], make: Callable[[], ContactLaw]) -> ContactLaw:
+    """The law of this process or of an earlier one, or a law that is made, and kept."""
+    key = key_of("law", *asked) if keeping() and os.environ.get(VARIABLE) != "off" else ""
+    if key in _laws:
+        return _laws[key].again()
+    kept = KeptPickles("whole_laws", VARIABLE, _MOST_KEPT, [key])
+    law = kept.get(0)
+    if not isinstance(law, ContactLaw):
+        law = make()
+        kept.put(0, law)
+    if kept.keeps:
+        while len(_laws) >= _MOST_MADE:
+            _laws.pop(next(iter(_laws)))
+        _laws[key] = law
+    return law

@@ -13,7 +13,7 @@ import hashlib
 import os
 import pickle
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -62,6 +62,86 @@ def key_of(*inputs: Any) -> str:
     except Exception:  # whatever cannot be pickled raises anything
         return ""
     return hashlib.sha256(_code() + content).hexdigest()
+
+
+class KeptPickles:
+    """Values that were made before, in a folder of the user's for caches, by hashes of what they are made from.
+
+    What is damaged, or what others may have written, is made again.
+
+    Parameters
+    ----------
+    name : str
+        Name of the folder.
+    variable : str
+        Environment variable that names another one; its value ``off`` keeps nothing.
+    most : int
+        How many are kept; the oldest ones make room.
+    keys : sequence of str
+        Hashes of the values; of one with an empty hash nothing is kept.
+    """
+
+    def __init__(self, name: str, variable: str, most: int, keys: Sequence[str]) -> None:
+        self._most = most
+        self._paths: list[Path | None] = [None] * len(keys)
+        with contextlib.suppress(RuntimeError):  # no home folder
+            if os.environ.get(variable) != "off":
+                folder = cache_folder(name, variable, os.environ)
+                self._paths = [folder / f"{key}.pickle" if key else None for key in keys]
+
+    @property
+    def keeps(self) -> bool:
+        """True where something is kept."""
+        return any(path is not None for path in self._paths)
+
+    def get(self, index: int) -> Any:
+        """Value by its number; None where there is none that is whole.
+
+        Parameters
+        ----------
+        index : int
+            Number of its hash.
+        """
+        path = self._paths[index]
+        if path is None or not path.is_file() or others_may_write(path.parent) or others_may_write(path):
+            return None
+        try:
+            return pickle.loads(path.read_bytes())
+        except Exception:  # a damaged pickle raises anything
+            return None
+
+    def put(self, index: int, value: Any) -> None:
+        """Keep a value; on a full disk, and in a folder that cannot be written, it is not kept.
+
+        Parameters
+        ----------
+        index : int
+            Number of its hash.
+        value : object
+            What is kept; picklable.
+        """
+        path = self._paths[index]
+        if path is None:
+            return
+        with contextlib.suppress(OSError):
+            own_folder(path.parent)
+            part, descriptor = new_part(path)
+            try:
+                with os.fdopen(descriptor, "wb") as file:
+                    pickle.dump(value, file, protocol=5)
+                part.replace(path)
+            finally:
+                part.unlink(missing_ok=True)
+            kept = sorted(path.parent.glob("*.pickle"), key=lambda file: file.stat().st_mtime)
+            for old in kept[: max(0, len(kept) - self._most)]:
+                old.unlink(missing_ok=True)
+
+    def clear(self) -> None:
+        """Remove the values."""
+        for path in self._paths:
+            if path is not None:
+                with contextlib.suppress(OSError):
+                    path.unlink(missing_ok=True)
 
 
 def kept_table(key: str, make: Callable[[], ApproachTable]) -> ApproachTable:
