@@ -32,7 +32,6 @@ Foam::filmHeat::filmHeat(const dictionary& dict, const filmMesh& film, const lin
     conductivity_(positive(dict, "oilConductivity")),
     capacity_(positive(dict, "oilHeatCapacity")),
     effusivity_(effusivityOf(dict)),
-    share_(dict.lookupOrDefault<scalar>("share", 1)),
     fluxUnit_(conductivity_*bulk_/contact.filmUnit()),
     oil_(dict.subDict("isotherms")),
     along_((film.columns() + 1)*film.rows(), -1),
@@ -189,8 +188,8 @@ Foam::scalarField Foam::filmHeat::residual(const volScalarField& T, const given&
                 leaves += (side ? 1 : -1)*up;
             }
 
-            const scalar sheared = share_*flow.shear[c]*flow.fraction[c]*volume;
-            const scalar pressed = share_*flow.compression[c]*flow.fraction[c]*volume;
+            const scalar sheared = flow.shear[c]*flow.fraction[c]*volume;
+            const scalar pressed = flow.compression[c]*flow.fraction[c]*volume;
             const scalar stored = capacity_*flow.density[c]*flow.temperatureRate[c]*volume;
             dissipated_ += sheared;
             compressed_ += pressed;

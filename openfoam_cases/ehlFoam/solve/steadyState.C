@@ -140,17 +140,16 @@ Foam::solvedFilm Foam::steadyState
     std::unique_ptr<lineContact> slower;
     solvedFilm found;
 
-    auto solve = [&](const word& type, const newtonControls& stageControls, const scalar heated = 0)
+    auto solve = [&](const word& type, const newtonControls& stageControls, const bool heated = false)
     {
         dictionary stage(dict);
-        if (heated > 0) stage.subDict("heat").set("share", heated);
-        else stage.remove("heat");
+        if (!heated) stage.remove("heat");
         if (stiffness < 1)
         {
             const word key("pressureViscosity");
             dictionary& oil = stage.subDict("viscosity");
             oil.set(key, stiffness*oil.get<scalar>(key));
-            if (heated > 0)
+            if (heated)
             {
                 dictionary& oils = stage.subDict("heat").subDict("isotherms").subDict("viscosity");
                 oils.set(key, scalarField(stiffness*scalarField(oils.lookup(key))));
@@ -172,7 +171,7 @@ Foam::solvedFilm Foam::steadyState
         found.flow = filmFlow::New(type, stage, film, here);
         found.contact.reset(new slice(*found.flow, here, x, filmScale));
         Info<< type;
-        if (heated > 0) Info<< " with heat";
+        if (heated) Info<< " with heat";
         if (stiffness < 1) Info<< ", " << stiffness << " of the stiffening";
         if (slid < 1) Info<< ", " << slid << " of the sliding";
         Info<< endl;
@@ -191,12 +190,12 @@ Foam::solvedFilm Foam::steadyState
             {
                 const label i = c/film.rows(), j = c % film.rows();
                 start.local[found.flow->place(i, j, 0)] += from.velocity[c];
-                if (heated > 0 && from.warmth.size())
+                if (heated && from.warmth.size())
                 {
                     start.local[found.flow->place(i, j, found.flow->warmthKind())] = from.warmth[c];
                 }
             }
-            if (heated > 0 && from.warmth.size())
+            if (heated && from.warmth.size())
             {
                 start.wall = from.wall;
                 for (label k = 0; k < from.flux.size(); ++k)
@@ -207,9 +206,9 @@ Foam::solvedFilm Foam::steadyState
         }
         else
         {
-            if (heated > 0) putWarmth(dict, *found.contact, start);
-            if (!newtonian || heated > 0) start = found.contact->balanced(start);
-            if (heated > 0) putFluxes(*found.contact, start);
+            if (heated) putWarmth(dict, *found.contact, start);
+            if (!newtonian || heated) start = found.contact->balanced(start);
+            if (heated) putFluxes(*found.contact, start);
         }
         found.result = newton(*found.contact, start, contact.load, stageControls, found.tangent);
         iterations += found.result.iterations;
@@ -225,8 +224,8 @@ Foam::solvedFilm Foam::steadyState
             if (type != "thinFilm") return converged;
             const label cells = film.columns()*film.rows();
             from.velocity.setSize(cells);
-            from.warmth.setSize(heated > 0 ? cells : 0);
-            from.flux.setSize(heated > 0 ? 2*film.columns() : 0);
+            from.warmth.setSize(heated ? cells : 0);
+            from.flux.setSize(heated ? 2*film.columns() : 0);
             for (label c = 0; c < cells; ++c)
             {
                 auto unknown = [&](const label kind)
@@ -234,17 +233,17 @@ Foam::solvedFilm Foam::steadyState
                     return from.local[found.flow->place(c/film.rows(), c % film.rows(), kind)];
                 };
                 from.velocity[c] = unknown(0);
-                if (heated > 0) from.warmth[c] = unknown(found.flow->warmthKind());
+                if (heated) from.warmth[c] = unknown(found.flow->warmthKind());
             }
             forAll(from.flux, k) from.flux[k] = from.local[found.flow->fluxPlace(k/2, k % 2)];
         }
         return converged;
     };
-    const scalar heated = dict.found("heat") ? 1 : 0;
+    const bool heated = dict.found("heat");
     // the film without its heat, and from there with it
     auto both = [&](const newtonControls& own)
     {
-        return solve("thinFilm", own) && (heated == 0 || solve("thinFilm", own, heated));
+        return solve("thinFilm", own) && (!heated || solve("thinFilm", own, heated));
     };
     auto thin = [&]()
     {
@@ -303,7 +302,7 @@ Foam::solvedFilm Foam::steadyState
     };
     const bool slides = contact.upperSpeed != contact.lowerSpeed;
     // a start with temperatures is near the film with all of its heat; who gives it has others where it leads nowhere
-    const bool warm = heated > 0 && dict.found("start") && dict.subDict("start").found("temperatures");
+    const bool warm = heated && dict.found("start") && dict.subDict("start").found("temperatures");
     const newtonControls near{controls.tolerance, controls.maxIterations, nearPressure};
     if (warm && !solve("thinFilm", near, heated)) return found;
     bool met = warm || (slides && both(controls));
