@@ -11,7 +11,7 @@ what                 cylindrical, needles     balls                     tapered,
 moved by the ring    1: radial                2: axial, radial          3: and tilt             `locating_force`
 its own freedoms     none, or 1 as a body     2                         3
 geometry             `bearing`, `thermal`     `ball_data`               `kernel_structs`
-law of a contact     `laws`, `table_law`      `laws`                    `line_film`             `normal_law`
+law of a contact     `laws`                   `laws`                    `line_film`             `normal_law`
 its films            `films`                  `films`, `response`       `line_film`
 force                `force_at_point`,        `ball_bearing`            `tapered_bearing`       `locating_force`
                      `bearing_force`

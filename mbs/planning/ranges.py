@@ -92,7 +92,7 @@ class Needed:
 
     @property
     def mapped(self) -> bool:
-        """Whether its bearings have a map, as cylindrical rollers do."""
+        """True where its bearings have a map, as cylindrical rollers do."""
         return isinstance(self.geometry, BearingGeometry)
 
     @property

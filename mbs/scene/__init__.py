@@ -12,7 +12,7 @@ scene          the scene itself; it may be made of specs, without a file
 kinds          the machine elements that a scene may have, one row each
 bodies         bodies are built, each content once
 map_set        maps of a scene: each bearing takes the one that was made for it
-contact_laws   the contact law in force
+contact_laws   the contact law in force; `table_law`: that of points which a user has
 subject        a scene with its law, as they are chosen: by names of laws, and by maps
 choices        what commands choose of a scene, one row each
 assembly       scene and law become a `Model`, or a list of all problems

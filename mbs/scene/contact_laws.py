@@ -25,6 +25,7 @@ from mbs.bearings.bearing_force import NO_COUPLED_MEMORY
 from mbs.bearings.films import DryContacts, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.laws import FORMULAS, DryLaw, Law
 from mbs.model.relaxation import DEFAULT_FILMS, FILM_WORDS, Films
+from mbs.scene.fields import read_columns
 from mbs.scene.map_set import TABLE_LAW, speeds_of_laws, table_maps
 
 if TYPE_CHECKING:
@@ -61,8 +62,7 @@ def read_law(path: Path, roller_length: float) -> DryLaw:
     InputError
         With what is wrong about the file, and where.
     """
-    from mbs.bearings.table_law import TableLaw, curve_problems  # laws by points alone need these
-    from mbs.scene.columns import read_columns
+    from mbs.scene.table_law import TableLaw, curve_problems  # laws by points alone need it
 
     name = f"law table:{path}"
     columns = read_columns(path, _UNITS, _ALLOWED, _MOST, _LONGEST, name)

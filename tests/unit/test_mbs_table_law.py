@@ -10,10 +10,10 @@ from mbs.analyses.reach import POINTS, axes_outside, source_of
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.table_law import TableLaw
 from mbs.scene.assembly import assemble
 from mbs.scene.contact_laws import read_law
 from mbs.scene.reader import read_scene
+from mbs.scene.table_law import TableLaw
 from tests.cases.commands import run
 
 NU308 = Bearing.named("NU308", clearance=0.0)

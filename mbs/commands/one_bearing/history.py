@@ -18,8 +18,7 @@ from mbs.commands.one_bearing.family import Family, Request
 from mbs.commands.one_bearing.request import point_at, read_request
 from mbs.commands.one_bearing.shared import LOADS, SPEEDS
 from mbs.output.one_bearing.history import history_lines, write_history
-from mbs.scene.columns import read_columns
-from mbs.scene.fields import FORCE
+from mbs.scene.fields import FORCE, read_columns
 
 FORM = "columns 'load [kN]', 'speed [rpm]', perhaps 'axial [kN]', and 'share [%]' of the revolutions or 'time [h]'"
 """What the file holds, for messages."""
