@@ -133,7 +133,7 @@ def ring_vibration(
     bearing : str
         Designation of a bearing that carries axial load, or its key `geometry` of `[[bearings]]`.
     deviations : str
-        Its `waviness`, `size_difference` and `spall`, as keys of `[[bearings]]` in a scene.
+        Keys `waviness`, `size_difference` and `spall` of `[[bearings]]` in a scene.
     axial : float
         Load along the axis [N].
     mass : float

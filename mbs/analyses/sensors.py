@@ -157,7 +157,7 @@ def excited_orders(model: Model, turns: float) -> list[tuple[float, str]]:
     for element in (entry.element for entry in model.system.elements if isinstance(entry.element, OnRings)):
         if element.deviation_data is None:
             continue
-        from mbs.bearings.deviations import named_orders  # with what few machines have
+        from mbs.bearings.deviating.tables import named_orders  # with what few machines have
 
         for name, order in named_orders(element.deviation_data).items():
             known = found.setdefault(round(order, 9), []) if order >= least else []

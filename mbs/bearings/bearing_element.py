@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from ehdmaps.maps.law import ContactLaw
     from ehdmaps.physics.lubricant import Lubricant
     from mbs.bearings.contact_report import BearingContacts, RollingLoss
-    from mbs.bearings.deviations import DeviationData, Deviations
+    from mbs.bearings.deviating.tables import DeviationData, Deviations
     from mbs.bearings.slices_in_balance import Side
     from mbs.model.condensed import Condensed
 
@@ -400,7 +400,7 @@ class BearingElement(RingElement):
         """Tables of its deviations; None without any."""
         if self.deviations is None:
             return None
-        from mbs.bearings.deviations import Turns, deviation_data  # with what few scenes state
+        from mbs.bearings.deviating.tables import Turns, deviation_data  # with what few scenes state
 
         geometry, places = self.bearing.geometry, self.bearing.roller_angles
         turns = Turns.of(geometry, self.inner_spin, self.outer_spin)

@@ -27,7 +27,7 @@ from ehdmaps.kernel.record import Record, integers, numbers
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import FELT, LEVEL, BearingElement, RingElement
 from mbs.bearings.cylinder import cylinder_of
-from mbs.bearings.deviations import gathered
+from mbs.bearings.deviating.tables import gathered
 from mbs.bearings.laws import FlatLaw
 from mbs.bearings.roller_element import RollerElement
 from mbs.bearings.speed_tables import shared
@@ -85,7 +85,7 @@ class Rings(Record):
     outward : array (bearings,)
         Centrifugal force of a roller that is a body by the square of the speed [N s2/rad2].
     deviations : address or None
-        Deviations of each bearing from its form, see `mbs.bearings.deviations`.
+        Deviations of each bearing from its form, see `mbs.bearings.deviating.tables`.
     """
 
     deviating: Any = None

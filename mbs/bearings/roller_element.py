@@ -24,7 +24,7 @@ from mbs.model.relaxation import Films, Relaxation
 
 if TYPE_CHECKING:
     from ehdmaps.maps.kernels.memory import FilmMemory, FilmState
-    from mbs.bearings.deviations import DeviationData
+    from mbs.bearings.deviating.tables import DeviationData
     from mbs.bearings.slices_in_balance import Side
 
 

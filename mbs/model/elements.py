@@ -275,7 +275,7 @@ class OnRings(ElementDefaults):
     locating : bool
         Whether it holds the ring along the axis, once its clearance is taken up.
     deviation_data : DeviationData or None
-        Deviations from its form, see `mbs.bearings.deviations`; None of a perfect bearing.
+        Deviations from its form, see `mbs.bearings.deviating.tables`; None of a perfect bearing.
     memory_words : str
         What describes films with memory, and leaves the rest of their response out.
     """

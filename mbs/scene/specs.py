@@ -20,7 +20,7 @@ from mbs.frozen import frozen
 from mbs.model.body import Body, Inertia, rigid_problems
 
 if TYPE_CHECKING:
-    from mbs.bearings.deviations import Deviations
+    from mbs.bearings.deviating.tables import Deviations
     from mbs.flexible.plan import Attached, ReductionPlan, Turn
     from mbs.flexible.reduced_body import ReducedBody
     from mbs.flexible.shaft_parts import Disc, Section
@@ -236,7 +236,7 @@ class BearingSpec:
     between_ribs : TaperedSpec or None
         The same bearing as ribs on both rings hold it, for a shaft that moves along x; None without such ribs.
     deviations : Deviations or None
-        Deviations from its form, see `mbs.bearings.deviations`.
+        Deviations from its form, see `mbs.bearings.deviating.tables`.
     of_points : bool
         Whether its contacts are points, see `LocatingSpec`; they are lines.
     """
@@ -289,7 +289,7 @@ class LocatingSpec:
     axial_offset : float
         Way of the inner ring along x against the outer one where both places have not moved [m].
     deviations : Deviations or None
-        Deviations from its form, see `mbs.bearings.deviations`.
+        Deviations from its form, see `mbs.bearings.deviating.tables`.
     of_points : bool
         Whether its contacts are points, else lines.
     """

@@ -217,7 +217,7 @@ laboratory measures them all, and none imports it."""
 
 SCENES = (
     *("__main__", "analyses", "budget", "cli", "commands", "exports", "imports", "library"),
-    *("identification", "output", "planning", "report", "scene", "unknowns"),
+    *("identification", "output", "planning", "report", "scene", "unknowns", "vibration"),
 )
 """Modules of mbs that plan a scene or are its command line: they may call ehdmaps.jobs; no other module of mbs may
 call them."""

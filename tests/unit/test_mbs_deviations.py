@@ -13,7 +13,7 @@ from mbs import assemble, parse_scene
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.deviations import Deviations, Spall, Turns, Wave, deviation_data, spectrum
+from mbs.bearings.deviating.tables import Deviations, Spall, Turns, Wave, deviation_data, spectrum
 from mbs.bearings.laws import hertz
 from mbs.linearised.excitation import excited
 from mbs.model.elements import Operation

@@ -204,7 +204,7 @@ def speed_work(balls: FloatArray, shape: ctypes.Structure, last: FloatArray, add
     last : array (Z, LAST)
         Centres from both grooves [m] and forces [N] of the last call, axial and radial; written.
     added : array (Z, 2, 2), optional
-        What deviations add to the contacts, see `mbs.bearings.deviations`.
+        What deviations add to the contacts, see `mbs.bearings.deviating.tables`.
     """
     more = None if added is None else added.ctypes.data
     return _work()(balls.shape[0], balls.ctypes.data, ctypes.addressof(shape), more, last.ctypes.data)

@@ -16,7 +16,7 @@ import numpy as np
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.kernel.library import checked
 from ehdmaps.kernel.record import Record, integers, numbers, room
-from mbs.bearings.deviations import gathered
+from mbs.bearings.deviating.tables import gathered
 from mbs.bearings.locating.film_memory import FilmsInTime, no_memory, rows_of
 from mbs.bearings.locating.film_tables import FilmCourse, FilmData
 from mbs.bearings.locating.locating_element import LocatingElement, LocatingStates
@@ -52,7 +52,7 @@ class PairBlock(Record):
     films : FilmData
         Laws of the contacts, and places of the steps on their tables.
     deviations : address or None
-        Deviations of each bearing from its form, see `mbs.bearings.deviations`.
+        Deviations of each bearing from its form, see `mbs.bearings.deviating.tables`.
     """
 
     _fields_ = (

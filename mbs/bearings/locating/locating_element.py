@@ -27,7 +27,7 @@ from mbs.model.relaxation import Films, Relaxation
 
 if TYPE_CHECKING:
     from mbs.bearings.contact_report import BearingContacts, RollingLoss
-    from mbs.bearings.deviations import DeviationData, Deviations
+    from mbs.bearings.deviating.tables import DeviationData, Deviations
     from mbs.model.condensed import Condensed
 
 HARMONICS = 3
@@ -187,7 +187,7 @@ class LocatingElement(OnRings):
         """Tables of its deviations; None without any."""
         if self.deviations is None:
             return None
-        from mbs.bearings.deviations import Turns, deviation_data  # with what few scenes state
+        from mbs.bearings.deviating.tables import Turns, deviation_data  # with what few scenes state
 
         geometry, places = self.force.geometry, self.force.angles
         turns = Turns.of(geometry, self.inner_spin, self.outer_spin)

@@ -8,7 +8,7 @@ from typing import Any
 
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import short
-from mbs.bearings.deviations import PARTS, Deviations, Spall, Wave, spectrum
+from mbs.bearings.deviating.tables import PARTS, Deviations, Spall, Wave, spectrum
 from mbs.scene.fields import DEGREE, MICROMETRE
 from mbs.scene.specs import BallSpec, BearingSpec, LocatingSpec
 

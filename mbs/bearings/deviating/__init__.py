@@ -1,0 +1,4 @@
+"""Deviations of bearings from their form, by which they excite what they carry: `tables`.
+
+Nothing is imported here: take the names from the module.
+"""
