@@ -155,8 +155,6 @@ class BallForce(LocatingForce):
             most_travel=geometry.most_travel,
             most_tilt=SPHERE_TILT if geometry.spherical else distance / max(geometry.inner_groove_radius, *places),
         )
-        if 0.0 < geometry.radial_distance < geometry.most_travel:
-            self.nearer = f", and less than {geometry.radial_distance:.6g} m across the axis at any ball"
         mass, diameter, pitch = geometry.ball_mass(material), geometry.ball_diameter, geometry.pitch_diameter
         axis = float(HYPOTHESES.index(geometry.hypothesis))
         self.drive = Drive(0.0, 0.0, math.nan, diameter / pitch, 0.5 * mass * pitch, 0.2 * mass * pitch, axis)

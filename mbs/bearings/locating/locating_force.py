@@ -181,8 +181,6 @@ class LocatingForce:
     film_loads: tuple[float, float]
     held: Any
     _data: Any
-    nearer: str = ""
-    """What is allowed beside both, in words."""
 
     def __call__(
         self,
@@ -415,7 +413,7 @@ class LocatingForce:
             raise InputError(
                 f"{kind}, pose: got x, y, z = {pose[0]:.6g}, {pose[1]:.6g}, {pose[2]:.6g} m, theta_y, theta_z "
                 f"= {pose[4]:.6g}, {pose[5]:.6g} rad; allowed: within {self.shape.most_travel:.6g} m and "
-                f"{self.shape.most_tilt:.6g} rad{self.nearer}; check units and the step of the solver"
+                f"{self.shape.most_tilt:.6g} rad; check units and the step of the solver"
             )
         raise AnalysisError(
             f"{kind} {self.geometry.name}: no balance of a {self.rolling_element} was found at {pose.tolist()}"

@@ -44,6 +44,7 @@ typedef struct ball_given {
     const double *added;                       /* what deviations add to both contacts, (2, 2), or null */
     double *by_rates;                          /* (4,): force of the inner ring by the rates of that; the last two of
                                                 * EHD_PAIR_BY_RATES; written */
+    int inside;                                /* whether the inner raceway lies inside of the ball; washers lie beside it */
 } ball_given;
 
 /* Forces on a ball at a place, and what they come from. */
@@ -131,14 +132,19 @@ EHD_INLINE void ball_loads(const ehd_ball_drive *of, double speed, double *out) 
     out[3] = by_traction;
 }
 
+/* Approach of the inner contact; a gap where its groove would press from beyond the outer one: there it has no raceway. */
+EHD_INLINE double ball_inner_approach(const ball_given *of, double distance) {
+    return of->inside && of->dr < 0.0 ? -of->inner_arm : distance - of->inner_arm;
+}
+
 EHD_INLINE ball_state ball_state_at(const ball_given *of, double x, double r) {
     ball_state s;
     double ix = of->dx - x, ir = of->dr - r, load[4];
     const double reach = sqrt(x * x + r * r), distance = most(sqrt(ix * ix + ir * ir), 1e-300);
     const ehd_pair_load outer =
         pair_carried_by(of->outer, of->outer_scale, of->outer_step, reach - of->outer_arm, of->held_outer);
-    const ehd_pair_load inner =
-        pair_carried_by(of->inner, of->inner_scale, of->inner_step, distance - of->inner_arm, of->held_inner);
+    const double pressed = ball_inner_approach(of, distance);
+    const ehd_pair_load inner = pair_carried_by(of->inner, of->inner_scale, of->inner_step, pressed, of->held_inner);
     const double qo = outer.load, ko = outer.stiffness, qi = inner.load, ki = inner.stiffness;
     const double one_o = 1.0 / reach, one_i = 1.0 / distance, ox = x * one_o, orr = r * one_o;
     ix *= one_i;
@@ -403,7 +409,7 @@ EHD_INLINE void ball_answer(const ball_given *of, const ball_state *s, ehd_ball_
     out->load[0] = qi;
     out->load[1] = s->qo;
     out->angle[0] = out->angle[1] = 0.0;
-    out->approach[0] = s->distance - of->inner_arm;
+    out->approach[0] = ball_inner_approach(of, s->distance);
     out->approach[1] = s->reach - of->outer_arm;
     out->inner[0] = ix;
     out->inner[1] = ir;
@@ -462,7 +468,8 @@ EHD_INLINE int ball_place(const ball_given *of, double share, ehd_ball_start *st
     ball_state s;
     if (share >= 0.0) {
         const double length = sqrt(of->dx * of->dx + of->dr * of->dr), one = 1.0 / length;
-        const double overlap = length - of->inner_arm - of->outer_arm;
+        const double line = length - of->inner_arm - of->outer_arm;
+        const double overlap = of->dr < 0.0 && of->inside ? least(line, 0.0) : line;
         if (overlap > 0.0) { /* two dry contacts in line share the overlap */
             const double reach = (of->outer_arm + share * overlap) / length;
             s = ball_state_at(of, reach * of->dx, reach * of->dr);

@@ -112,7 +112,7 @@ int ehd_ball_force(const ehd_ball_data *of, const double *pose, ehd_ball_start *
     const double share = dry && still ? ball_share(&of->inner, &of->outer) : -1.0;
     ball_given on = {0.0, 0.0, of->shape.inner_arm, of->shape.outer_arm, of->rest, of->drive, &of->inner, &of->outer,
                      1.0 / of->inner.scale, 1.0 / of->inner.step, 1.0 / of->outer.scale, 1.0 / of->outer.step,
-                     NULL, NULL, NULL, NULL};
+                     NULL, NULL, NULL, NULL, of->shape.radial > 0.0};
     double by_rates[4];
     int loaded = 0;
     memset(force, 0, 6 * sizeof *force);
@@ -124,8 +124,6 @@ int ehd_ball_force(const ehd_ball_data *of, const double *pose, ehd_ball_start *
         const double s = turn_s * of->cosine[j] + turn_c * of->sine[j];
         ehd_ball_found *ball = &found[j];
         const double *row = ball_groove(of, j, pose, c, s, &on.dx, &on.dr), way = row[0], place = row[1];
-        /* the inner groove would be beyond the outer one, and press from a raceway that is not there; washers reach both ways */
-        if (on.dr < 0.0 && of->shape.radial > 0.0) return EHD_BALL_TOO_FAR;
         if (row[3] != 0.0) {
             double x, r;
             ball_groove(of, j + (int64_t)row[3], pose, c, s, &x, &r);
