@@ -15,8 +15,9 @@ from pathlib import Path
 
 from ehdmaps.choices import texts_of
 from ehdmaps.errors import AnalysisError, EhdmapsError, InputError
-from ehdmaps.jobs.make.status import duration, tell
+from ehdmaps.jobs.make.status import duration
 from ehdmaps.outputs import Kind, Output, check_outputs, write_text
+from ehdmaps.program import tell
 from mbs.analyses.campbell import campbell_problems
 from mbs.analyses.case import Case
 from mbs.analyses.modes import modes

@@ -436,7 +436,7 @@ class GearPair:
 
         (z1, x1), (z2, x2) = sorted(zip(self.teeth, self.shifts, strict=True))
         single = tooth_stiffness((z1, z2), (x1, x2), self.helix_angle, self.pressure_angle)
-        softer = min(self.load / _SPECIFIC_LOAD, 1.0) ** 0.25
+        softer = math.pow(min(self.load / _SPECIFIC_LOAD, 1.0), 0.25)
         return softer * single * (0.75 * self.contact_ratios[0] + 0.25) * self.face_width
 
     @property

@@ -103,8 +103,8 @@ def course_under_load(
     held, errors = np.zeros(_PHASES), np.zeros(_PHASES)
     for k in range(_PHASES):
         first = np.mod(k / _PHASES + lag + 0.5 * part, 1.0)
-        places = (first[:, None] + np.arange(math.ceil(transverse) + 1)).ravel()
-        places = base_pitch * places[places < transverse]
+        all_pairs = (first[:, None] + np.arange(math.ceil(transverse) + 1)).ravel()
+        places = base_pitch * all_pairs[all_pairs < transverse]
         # a pair begins at the tip of the driven gear, and ends at that of the driving one
         end = transverse * base_pitch - places
         relieved = relief.amounts[1] * np.maximum(1.0 - places / lengths[1], 0.0)

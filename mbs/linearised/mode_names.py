@@ -15,7 +15,6 @@ from mbs.linearised.modes import Modes
 from mbs.model.body import Body
 from mbs.model.elements import OnRings
 from mbs.model.equilibrium import Equilibrium
-from mbs.model.on_rings import ring_motion
 
 ALIKE = 0.5
 """Part of the largest share of strain energy from which on another bearing or spring is named beside the first."""
@@ -83,7 +82,7 @@ def _name(balance: Equilibrium, found: Modes, mode: int, counts: dict[str, int])
         force = balance.element_stiffness[place] @ ports
         # of rollers that are bodies, both rings and the rollers have a part; the inner ring tells the direction
         energies += np.real(np.conj(ports[:6]) * force[:6])
-        moved.append(ring_motion(ports)[1:3])
+        moved.append((ports[:6] - ports[6:12] if ports.size > 6 else ports)[1:3])
     way, _ = max(_WAYS, key=lambda one: float(energies[list(one[1])].sum()))
     spin = next((body.spin for body in system.bodies if body.spin), 1.0)
     return f"{way} of {', '.join(alike)}", _whirl(np.array(moved), spin) if way == "radial" else ""

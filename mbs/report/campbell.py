@@ -394,7 +394,8 @@ def named_orders(model: Model) -> list[tuple[float, str]]:
             add(2.0 * one.order, f"2 {words}")
             continue
         passing = "BPFO" if not getattr(element, "outer_spin", 0.0) else "BPFI"
-        passing = passing if 0.0 in (element.inner_spin, element.outer_spin) else "passing"
+        spins = getattr(element, "inner_spin", 0.0), getattr(element, "outer_spin", 0.0)
+        passing = passing if 0.0 in spins else "passing"
         add(one.order, f"{passing} {element.name}")
         add(one.order / _count(element), f"cage {element.name}")
     return [(order, _names(names)) for order, names in sorted(found.items())]

@@ -72,7 +72,7 @@ def scene_report(
         Section("critical", "Where are critical speeds, and how far from operation?", [_critical(found)]),
         Section("unbalance", "What do unbalances do?", [_unbalance(found)]),
         Section("transfer", "What reaches the sensors, dry beside films?", _transfer(found, names)),
-        Section("campbell-diagram", "Which orders meet which modes?", [_campbell(found, saved)]),
+        Section("campbell-diagram", "Campbell diagram: which orders meet which modes?", [_campbell(found, saved)]),
         Section("modes", f"Which modes are there at {RPM.text(scene.speed)}, and where is their energy?",
                 [_modes(found, names), *_moving(found, names)]),
         Section("limits", "What is not known, and what would it change?", [limiting]),

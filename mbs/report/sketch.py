@@ -114,11 +114,8 @@ def _shapes(model: Model) -> Iterator[tuple[FloatArray, str, str]]:
             both = bore, diameter
             yield from _turned(x + begin, x + end, y, both, both, "disc", f"{spec.name}: a disc")
     for spec in model.scene.bodies:
-        for part in spec.parts if isinstance(spec, RigidSpec) else ():
-            if (size := _like(part, 0.0)) is not None:
-                middle, y = spec.position[0] + part.offset, spec.position[axis]
-                both = 0.0, size[1]
-                yield from _turned(middle - 0.5 * size[0], middle + 0.5 * size[0], y, both, both, "disc", spec.name)
+        if isinstance(spec, RigidSpec):
+            yield from _rigid(spec, axis)
     for gear in model.scene.gears:
         for place, teeth in zip((gear.on, gear.against), gear.teeth, strict=True):
             if place != GROUND:
@@ -129,6 +126,16 @@ def _shapes(model: Model) -> Iterator[tuple[FloatArray, str, str]]:
     for bearing in model.scene.of_all_kinds:
         x, y = _seen(model.system, bearing.inner if bearing.inner != GROUND else bearing.outer, axis)
         yield from _elements(bearing.geometry, x, y, f"{bearing.name}: {bearing.geometry.title}")
+
+
+def _rigid(spec: RigidSpec, axis: int) -> Iterator[tuple[FloatArray, str, str]]:
+    """Yield the parts of a rigid body that have moments of inertia."""
+    for part in spec.parts:
+        like = _like(part, 0.0)
+        if like is not None:
+            middle, both = spec.position[0] + part.offset, (0.0, like[1])
+            begin, end = middle - 0.5 * like[0], middle + 0.5 * like[0]
+            yield from _turned(begin, end, spec.position[axis], both, both, "disc", spec.name)
 
 
 def ring_of(spec: ShaftSpec, disc: Disc) -> tuple[float, float, float, float]:

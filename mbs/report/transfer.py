@@ -78,8 +78,8 @@ def _path(
     rows = []
     for mode, frequency, height in modes:
         cells = []
-        for law in range(len(found)):
-            cells += [known(float(frequency[law]), 4), known(display.value(float(height[law])))]
+        for k in range(len(found)):
+            cells += [known(float(frequency[k]), 4), known(display.value(float(height[k])))]
         if len(found) > 1:
             cells.append(_decibels(float(height[0]), float(height[1])))
         rows.append((f"{mode + 1}", names.get(int(mode), ""), *cells))

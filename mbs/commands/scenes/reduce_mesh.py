@@ -12,9 +12,10 @@ import numpy as np
 
 from ehdmaps.errors import InputError, Problems, closest, short
 from ehdmaps.extras import lacking
-from ehdmaps.jobs.make.status import duration, tell
+from ehdmaps.jobs.make.status import duration
 from ehdmaps.outputs import Output, output_problems
 from ehdmaps.physics.solids import MATERIALS, Material
+from ehdmaps.program import tell
 from ehdmaps.solids.calculix import program
 from ehdmaps.units import quantity
 from mbs.commands.common import read_option
