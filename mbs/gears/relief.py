@@ -99,7 +99,8 @@ def course_under_load(
     slices = _SLICES if overlap else 1
     lag = overlap * ((np.arange(slices) + 0.5) / slices - 0.5)
     each = stiffness / transverse / slices
-    lengths = relief.lengths or (0.5 * part * base_pitch,) * 2
+    # of a whole contact ratio, which has no part of a pair more: half a pitch
+    lengths = relief.lengths or (0.5 * (part or 1.0) * base_pitch,) * 2
     held, errors = np.zeros(_PHASES), np.zeros(_PHASES)
     for k in range(_PHASES):
         first = np.mod(k / _PHASES + lag + 0.5 * part, 1.0)
