@@ -73,13 +73,17 @@ def test_the_licence_of_the_fmi_headers_is_the_one_that_each_carries(header):
     assert carried[carried.index(start) :][:length] == whole[whole.index(start) :]
 
 
+_APART = {"nastran": "pyNastran", "large": "pypardiso"}
+"""Packages of extras that tests do not install, which tell their licence where they are there."""
+
+
 def test_packages_of_extras_under_the_gpl_are_those_that_readme_names():
     """By what the installed packages say of themselves; extras for tests and documentation are not shipped with it."""
     extras = PROJECT["optional-dependencies"]
     named = {
         extra: [re.match(r"[\w-]+", entry)[0] for entry in entries if not entry.startswith("ehdmaps[")]
         for extra, entries in extras.items()
-        if extra not in ("test", "docs") and not (extra == "nastran" and importlib.util.find_spec("pyNastran") is None)
+        if extra not in ("test", "docs") and importlib.util.find_spec(_APART.get(extra, "ehdmaps")) is not None
     }
     under_gpl = set()
     for extra, packages in {"": [re.match(r"[\w-]+", entry)[0] for entry in PROJECT["dependencies"]], **named}.items():
