@@ -89,7 +89,9 @@ def levels(monkeypatch):
 
 def run_command(scene, **values):
     names = ("law", "map", "films", "clearance", "structural_law", "output", "plot", "highest", "window")
-    given = argparse.Namespace(**{**dict.fromkeys(names), "vary": [], "workers": 1, "scene": str(scene), **values})
+    given = argparse.Namespace(
+        **{**dict.fromkeys(names), "vary": [], "workers": 1, "executor": None, "scene": str(scene), **values}
+    )
     return importlib.import_module("mbs.laboratory.commands.variants").run(given)
 
 
