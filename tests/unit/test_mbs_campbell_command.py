@@ -31,7 +31,9 @@ def arguments(scene, **values):
         "tolerance",
         "waterfall",
     )
-    return argparse.Namespace(**{**dict.fromkeys(names), "modes": False, "workers": 1, "scene": str(scene), **values})
+    return argparse.Namespace(
+        **{**dict.fromkeys(names), "modes": False, "workers": 1, "executor": None, "scene": str(scene), **values}
+    )
 
 
 @pytest.fixture(scope="module")

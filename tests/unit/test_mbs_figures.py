@@ -325,7 +325,9 @@ class TestModes:
 
     def given(self, **more):
         names = ("law", "map", "clearance", "output", "plot", "highest")
-        return argparse.Namespace(**{**dict.fromkeys(names), "scene": "n1014_rigid", "workers": 1, **more})
+        return argparse.Namespace(
+            **{**dict.fromkeys(names), "scene": "n1014_rigid", "workers": 1, "executor": None, **more}
+        )
 
     def test_text_has_the_modes_up_to_the_highest_frequency(self):
         text, status = modes_command.run(self.given(law="hertz", highest="1 kHz", cage_angles="1"))
