@@ -441,8 +441,8 @@ class WarmPoint:
                                      * self.surface_rate.reshape(-1, rows), axis=0)  # fmt: skip
             self.surface = (self.wall * (self.jaeger @ flux.reshape(-1, rows)) - memory).ravel()
         shares, mobility, _ = self._shares(self._log_ratio(P, cold))
-        change = float(np.max(np.abs(mobility - self.mobility)[(P > 1e-6)]))
-        thinned = 1.0 - self.expansion * np.mean(self.warm, axis=1)
+        change = float(np.max(np.abs(mobility - self.mobility)[P > 1e-3]))
+        thinned = 1.0 - self.expansion * np.where(P > 1e-3, np.mean(self.warm, axis=1), 0.0)
         self.thinned = (1.0 - rate) * self.thinned + rate * thinned
         self.shares = (1.0 - rate) * self.shares + rate * shares
         self.mobility = (1.0 - rate) * self.mobility + rate * mobility

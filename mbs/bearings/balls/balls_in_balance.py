@@ -102,8 +102,8 @@ def balls_in_balance(force: BallForce, balls: BallLoads, conditions: dict[str, A
         sides = [one.left_out(at.loads[:, i], s) for i, one in enumerate(law.responses)]
         return np.stack([part for part, _ in sides], axis=2), np.stack([doubt for _, doubt in sides], axis=2)
 
-    found = {"left_out": left_out, "held_by": "film table", "which": np.flatnonzero(on)}
-    return Condensed(contacts, pose, relaxes, slopes, **found)
+    which = np.flatnonzero(on)
+    return Condensed(contacts, pose, relaxes, slopes, left_out=left_out, held_by="film table", which=which)
 
 
 def _contacts(law: BallLaw, shape: BallShape, rows: FloatArray, drive: Drive) -> tuple[Contacts, _Places]:
