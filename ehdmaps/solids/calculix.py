@@ -56,7 +56,7 @@ def version(purpose: str) -> str:
     return match[1] if match else "unknown"
 
 
-def run_deck(text: str, folder: Path, job: str, purpose: str, longest: float = LONGEST_RUN) -> None:
+def run_deck(text: str, folder: Path, job: str, purpose: str, longest: float | None = None) -> None:
     """Run CalculiX on a deck in a folder; its files JOB.dat, JOB.frd and so on are there after.
 
     Parameters
@@ -69,8 +69,8 @@ def run_deck(text: str, folder: Path, job: str, purpose: str, longest: float = L
         Name of the files without ending.
     purpose : str
         What needs CalculiX, for the message.
-    longest : float
-        Seconds after which it is stopped.
+    longest : float, optional
+        Seconds after which it is stopped; `LONGEST_RUN` without.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def run_deck(text: str, folder: Path, job: str, purpose: str, longest: float = L
     """
     (folder / f"{job}.inp").write_text(text, "ascii")
     log = folder / f"{job}.log"
-    command = [program(purpose), "-i", job]
+    command, longest = [program(purpose), "-i", job], LONGEST_RUN if longest is None else longest
     try:
         with log.open("wb") as output:
             result = subprocess.run(

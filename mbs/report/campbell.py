@@ -385,7 +385,8 @@ def named_orders(model: Model) -> list[tuple[float, str]]:
         add(1.0, "1x")
     gears = {element.name for element in model.scene.gears}
     for connected in model.system.elements:
-        one, element = connected.element.excitation, connected.element
+        one = connected.element.excitation
+        element: Any = getattr(connected.element, "plain", connected.element)  # rollers that are bodies hold a bearing
         if one is None:
             continue
         if element.name in gears:

@@ -78,7 +78,7 @@ def spall(figure: Figure) -> None:
 
 
 def cost() -> None:
-    """Processor time of a step with waviness and without, least of five, in turn."""
+    """Processor time of a step with waviness and without, least of five, in turn, and Newton iterations of each."""
     for law in (FILMS, DRY):
         for kind in (
             kind for kind in KINDS if kind.name in ("cylindrical", "rollers as bodies", "deep groove", "tapered")
@@ -87,14 +87,16 @@ def cost() -> None:
             texts = text, text.replace("[[bearings]]\n", f"[[bearings]]{FEWER}")
             models = [assemble(parse_scene(one, "one", "one"), law) for one in texts]
             start = equilibrium(models[0].system, models[0].operation).displacement
-            best = [float("inf")] * 2
+            best, turns = [float("inf")] * 2, [0.0] * 2
             for _ in range(5):
                 for index, model in enumerate(models):
                     began, settings = time.process_time(), Settings(step=2e-5, sample=1e-3)
-                    run(model.system, SpeedProfile.constant(157.0), 0.1, settings, displacement=start)
+                    made = run(model.system, SpeedProfile.constant(157.0), 0.1, settings, displacement=start)
+                    turns[index] = made.iterations / made.steps
                     best[index] = min(best[index], time.process_time() - began)
             ratio = best[1] / best[0]
-            print(f"step of {kind.name}, {NAMES[law]}: {200.0 * best[0]:.1f} us, with waviness {ratio:.2f} times")
+            times = f"{200.0 * best[0]:.1f} us, with waviness {ratio:.2f} times"
+            print(f"step of {kind.name}, {NAMES[law]}: {times}; iterations {turns[0]:.2f}, {turns[1]:.2f}")
 
 
 def main() -> None:

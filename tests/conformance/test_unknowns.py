@@ -13,6 +13,7 @@ import pytest
 import xarray as xr
 
 from mbs import assemble, parse_scene, read_scene, statics
+from mbs.commands.one_bearing import request
 from mbs.unknowns.held_open import held_open
 from tests.cases.commands import check_units, run
 from tests.conformance.machines import KINDS, MIXED
@@ -136,12 +137,16 @@ def test_one_bearing(name, capsys, tmp_path, monkeypatch):
     known = "; ".join(f"{key} = +- {at}" for key, at in KNOWN.items())
     ask = (name, "--load", "2 kN", "--speed", "1500 rpm", "--law", "table", *DESIGNATIONS[name])
     at = ("--temperature", "60 degC", "--know", f"temperature = +- 2 K; {known}")
+    bands, make = {}, request.point_bands
+    monkeypatch.setattr(request, "point_bands", lambda *given: bands.update(make(*given)) or bands)
     found, out = solved(capsys, "bearing", *at, "--bands", "all", ask=ask)
     check_units(found)
     assert "held open: temperature +-2 K" in out and "K along, N/um" in out
     ends = [solved(capsys, "bearing", "--temperature", end, ask=ask)[0] for end in ENDS]
     told = [each.removesuffix("_low") for each in found if each.endswith("_low")]
-    hold(found, ends, told, {})
+    # numerics, which bounds hold too, are in no file
+    hold(found, ends, told, {each: bands[each].numerics for each in told})
+    assert np.all(bands["stiffness_along"].numerics > 0.0)
     assert {"stiffness_along", "damping_along", "minimum_film"} <= set(told)
 
 

@@ -130,7 +130,10 @@ def test_run_writes_all_that_it_computes(here, capsys):
     assert status == 0
     names = ("statics", "modes", "sweep", "critical")
     written = {path.name for path in (here / "own_results").iterdir()}
-    assert written == {f"{name}.{end}" for name in names for end in ("nc", "png", "txt")} - {"statics.png"}
+    assert written == {f"{name}.{end}" for name in names for end in ("nc", "png", "txt")} - {"statics.png"} | {
+        "report.html",
+        "report.txt",
+    }
     assert all(f"own_results/{name}: written" in said for name in written)
     with xr.open_dataset("own_results/critical.nc") as found:
         assert {"critical_speed", "response_real"} & set(found.variables)

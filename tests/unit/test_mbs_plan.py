@@ -224,7 +224,7 @@ def test_command_writes_a_job_for_each_geometry(here, capsys):
         "job_bearing_right.toml",
         "two.toml",
     ]
-    assert out.count("read from the film table, 120 solved to check its contact laws") == 2
+    assert out.count("read from the film table") == 2
     for side in ("left", "right"):
         name = f"job_bearing_{side}.toml"
         assert f"{name}: written" in out
@@ -254,7 +254,7 @@ def test_centrifugal_load_is_added(here, capsys):
 def test_rollers_as_bodies_are_planned_too(here, capsys):
     status, out, _ = run(capsys, "n1014_rigid")
     assert status == 0
-    assert "read from the film table, 120 solved to check its contact laws" in out
+    assert "read from the film table" in out
 
 
 def test_everything_wrong_is_said_at_once_and_nothing_written(here, capsys):

@@ -272,7 +272,7 @@ class TestRange:
 def given(**options):
     plain = {"scene": "nu308_rigid", "output": None, "plot": None, "speed": None, "cage_angles": None}
     unset = {"waterfall": None, "law": None, "map": None, "clearance": None, "load_factor": None}
-    return argparse.Namespace(**{**plain, **unset, "workers": 1, **options})
+    return argparse.Namespace(**{**plain, **unset, "workers": 1, "executor": None, **options})
 
 
 class TestCases:

@@ -24,6 +24,7 @@ from mbs.model.findings import CARRIES, Cause, Finding
 
 if TYPE_CHECKING:
     from mbs.life import ReferenceLife
+    from mbs.model.condensed import Condensed
 
 LAST = 8
 """Numbers that `LocatingForce.work` keeps of a rolling element: places, and then the loads on them."""
@@ -181,6 +182,7 @@ class LocatingForce:
     film_loads: tuple[float, float]
     held: Any
     _data: Any
+    _deviates = False
 
     def __call__(
         self,
@@ -226,7 +228,7 @@ class LocatingForce:
             if not np.all(np.isfinite(rate)):
                 raise InputError(f"{self.geometry.kind}, velocity: got {rate.tolist()}; allowed: finite numbers")
             force -= damping @ rate
-        if self._data.given("added") is not None:
+        if self._deviates:
             force += self.by_rates[:6]
         return force, stiffness, damping
 
@@ -303,9 +305,24 @@ class LocatingForce:
         added : array (Z, 2, 2) or None
             Approaches and rates of both contacts.
         """
+        self._deviates = added is not None
         self._data.put(added=added)
-        if added is not None:
+        if self._deviates:
             self._data.put(by_rates=np.zeros(BY_RATES))
+
+    def condensed(self, loads: Any, conditions: dict[str, Any], relaxes: bool) -> Condensed | None:
+        """Small motions of the elements, see `mbs.model.elements.OnRings.small_motions`; None of kinds without films.
+
+        Parameters
+        ----------
+        loads : Loads
+            State of the elements at the last call.
+        conditions : dict
+            Angle of the cage and speeds there.
+        relaxes : bool
+            Whether films have a memory.
+        """
+        return None
 
     @property
     def by_rates(self) -> FloatArray:

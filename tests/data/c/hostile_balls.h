@@ -50,7 +50,8 @@ static int balls(void) {
     ehd_ball_data data = {{apart * sin(angle), apart * cos(angle) - 1e-5 * (part() - 0.5), arm, 0.5 * apart, 0.5 * apart,
                            apart, apart / arm},
                           {0.0, 0.0, part() < 0.2 ? 100.0 * part() : NAN, 0.2, 1e-4, 5e-5, (double)(any() % 4)},
-                          0.0, 0.0, count, cosine, sine, one ? NULL : rows, with_memory ? kept : NULL, pair_law(dry), pair_law(dry)};
+                          0.0, 0.0, count, cosine, sine, one ? NULL : rows, with_memory ? kept : NULL, pair_law(dry), pair_law(dry),
+                          NULL, NULL};
     for (int turn = 0; turn < 4; turn++) {
         double size = 0.0, kept_size = 0.0;
         for (int i = 0; i < 6; i++) pose[i] = number(i < 3 ? 3e-5 : 1e-3);

@@ -112,7 +112,7 @@ static ehd_cylinder cylinder_of(void) {
     double *position = room(slices + 1), *profile = room(slices + 1), *cosine = room(rollers), *sine = room(rollers);
     double *weight = level ? room(slices) : NULL;
     ehd_cylinder bearing = {rollers, slices, !level && alike, 2e-6 * (part() - 0.5), 0.01 / (double)slices, 0.01, 0.5,
-                            0.005, DBL_MAX, 0.0, position, profile, cosine, sine, weight};
+                            0.005, DBL_MAX, 0.0, position, profile, cosine, sine, weight, NULL, NULL};
     position[slices] = profile[slices] = 0.0;
     for (int64_t i = 0; i < slices; i++) {
         position[i] = (double)(2 * i + 1 - slices) / (2.0 * (double)slices) * 0.01;
@@ -433,7 +433,7 @@ static int tapered(void) {
     for (int64_t n = 0; memory && n < 2 * rollers; n++)
         for (int64_t i = 0; i < slices; i++) memory[(n * EHD_TAPER_MEMORY + EHD_PAIR_TIME) * slices + i] = 1.0;
     const ehd_taper_data data = {rollers, slices, ribs, 0.03, {0.24, 0.97}, {0.18, 0.98}, 1e-6 * part(), 1e-3, 3e-2,
-                                 1e9, any() % 2 ? 10.0 : 0.0, 1e-5, rib, lever, profile, cosine, sine};
+                                 1e9, any() % 2 ? 10.0 : 0.0, 1e-5, rib, lever, profile, cosine, sine, NULL, NULL};
     const double step = 10.0 / (double)(rows + 1);
     const ehd_pair_law line = {rows ? 1.0 : 5e8, data.damping, 1e-5, 0.0, 3e-7, -3.0, step, rows, table};
     const ehd_pair_law law[2] = {line, line};

@@ -13,9 +13,11 @@ static double deviation_place(const ehd_deviations *of, double angle) {
 /* Add the value of a table at a place, which may be up to two turns, and its change by a node times rate, to out (2,). */
 EHD_INLINE void add_deviation(const ehd_deviations *of, int64_t table, double place, double rate, double *out) {
     const int64_t cell = (int64_t)place;
-    const double t = place - (double)cell, *c = of->table + 4 * (table * of->nodes + (cell & (of->nodes - 1)));
-    out[0] += c[0] + t * (c[1] + t * (c[2] + t * c[3]));
-    out[1] += rate * (c[1] + t * (2.0 * c[2] + 3.0 * t * c[3]));
+    const double *own = of->table + 2 * table * of->nodes, *left = own + 2 * (cell & (of->nodes - 1));
+    const double *right = own + 2 * ((cell + 1) & (of->nodes - 1)), t = place - (double)cell;
+    const double rise = right[0] - left[0], both = left[1] + right[1] - 2.0 * rise, bend = rise - left[1] - both;
+    out[0] += left[0] + t * (left[1] + t * (bend + t * both));
+    out[1] += rate * (left[1] + t * (2.0 * bend + 3.0 * t * both));
 }
 
 const double *ehd_deviations_at(const ehd_deviations *of, double angle, double speed) {

@@ -21,7 +21,7 @@ typedef struct ehd_deviations {
     const int64_t *tables;    /* (elements, 3): table of the inner ring, of the outer ring, of the element; < 0 none */
     const double *places;     /* (elements): angles in the cage, in nodes, from 0 to nodes */
     const double *sizes;      /* (elements): half of what the diameter is larger [m] */
-    const double *table;      /* (tables, nodes, 4): cubics from each node to the next one [m] */
+    const double *table;      /* (tables, nodes, 2): value [m], and change by a node, of cubics between the nodes */
     double *added;            /* (elements, 2, 2): approach [m] and its rate [m/s] of both contacts, written */
     double *moment;           /* (2): angle [rad] and speed [rad/s] of the system for which these are */
 } ehd_deviations;
