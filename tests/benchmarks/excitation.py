@@ -53,6 +53,7 @@ def spindle(figure: Figure) -> None:
         axes.bar(places, high - low + 1e-3 * high, 0.25, low, label=NAMES[law])
     axes.set_xticks(range(3), [f"{low:.0f} to\n{high:.0f} Hz" for low, high in BANDS])
     axes.set_yscale("log")
+    axes.set_ylim(0.7e6 * found.bands.min(), 1.4e6 * found.bands.max())
     axes.set_ylabel("velocity of the outer ring, rms [um/s]")
     axes.legend()
 
