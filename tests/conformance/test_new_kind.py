@@ -99,6 +99,9 @@ class PadForce(LocatingForce):
         side = ContactState(1e6 * values, 1e6 * values, *np.full((3, PADS, 1), np.nan), 0.0 * values)
         return BearingContacts(side, side), loss_of(np.full((2, PADS), np.nan), loads.load[0], 1.0)
 
+    def condensed(self, loads, conditions, relaxes):
+        return None  # without films
+
     def work(self, speeds, last):
         return 0.0
 

@@ -24,7 +24,6 @@ from mbs.model.findings import CARRIES, Cause, Finding
 
 if TYPE_CHECKING:
     from mbs.life import ReferenceLife
-    from mbs.model.condensed import Condensed
 
 LAST = 8
 """Numbers that `LocatingForce.work` keeps of a rolling element: places, and then the loads on them."""
@@ -309,20 +308,6 @@ class LocatingForce:
         self._data.put(added=added)
         if self._deviates:
             self._data.put(by_rates=np.zeros(BY_RATES))
-
-    def condensed(self, loads: Any, conditions: dict[str, Any], relaxes: bool) -> Condensed | None:
-        """Small motions of the elements, see `mbs.model.elements.OnRings.small_motions`; None of kinds without films.
-
-        Parameters
-        ----------
-        loads : Loads
-            State of the elements at the last call.
-        conditions : dict
-            Angle of the cage and speeds there.
-        relaxes : bool
-            Whether films have a memory.
-        """
-        return None
 
     @property
     def by_rates(self) -> FloatArray:
