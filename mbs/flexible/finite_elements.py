@@ -14,7 +14,6 @@ Nodes that are fixed are not in the matrices: their share of the mass, and of th
 
 from __future__ import annotations
 
-import importlib.util
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -26,22 +25,13 @@ from ehdmaps.errors import Problems
 from mbs.flexible.plan import UNIT_SYSTEMS
 from mbs.model.body import lever_arm
 
-SMALL, LARGE = 300_000, 1_200_000
-"""Degrees of freedom that SuperLU factorises, and PARDISO."""
+MOST_FREEDOMS = 300_000
+"""Degrees of freedom that are taken: of more SuperLU has no memory."""
 
 COARSER = "take a coarser mesh"
 
-
-def most_freedoms() -> int:
-    """Degrees of freedom that are taken: more where PARDISO is installed."""
-    return LARGE if importlib.util.find_spec("pypardiso") else SMALL
-
-
-def too_many() -> str:
-    """Words on what is allowed, and what to do."""
-    beyond = "" if most_freedoms() > SMALL else f'; or pip install "ehdmaps[large]", for {LARGE}'
-    return f"allowed: at most {most_freedoms()}; {COARSER}{beyond}"
-
+TOO_MANY = f"allowed: at most {MOST_FREEDOMS}; {COARSER}"
+"""Words on what is allowed, and what to do."""
 
 _OVERREACH = 1.0 + 1e-6
 """Square of an entry over the product of its diagonals, which is at most 1 but for rounding."""
@@ -139,9 +129,9 @@ class FiniteElementModel:
         """List problems with the shapes."""
         size = self.nodes.size
         problems = []
-        if not 1 <= size <= most_freedoms() or self.nodes.ndim != 1:
+        if not 1 <= size <= MOST_FREEDOMS or self.nodes.ndim != 1:
             problems.append(
-                f"finite-element body, nodes: got shape {self.nodes.shape}, one a degree of freedom; {too_many()}"
+                f"finite-element body, nodes: got shape {self.nodes.shape}, one a degree of freedom; {TOO_MANY}"
             )
         if self.directions.shape != self.nodes.shape:
             problems.append(

@@ -6,13 +6,12 @@ sparse as the mesh; the few multipliers follow from the small dense matrix B (K 
 away is given back in two steps: exactly in the span of the computed modes, by iteration in the rest, where it shrinks
 by a/(a + omega^2) with omega above the cut-off.
 
-Matrices are factorised by SuperLU, of large bodies by PARDISO. SuperLU keeps both triangles and fills some 40 GB for a
-million degrees of freedom; PARDISO keeps one, in 7 GB.
+Matrices are factorised by SuperLU, which keeps both triangles.
 """
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from scipy import linalg, sparse
@@ -21,7 +20,7 @@ from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh, splu
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.extras import needs
-from mbs.flexible.finite_elements import COARSER, SMALL
+from mbs.flexible.finite_elements import COARSER
 
 MOST_MODES = 300
 
@@ -82,7 +81,7 @@ def factors(matrix: sparse.csc_array, order: IntArray, *, positive: bool) -> Fac
         If it cannot be factorised.
     """
     try:
-        return _Pardiso(matrix, positive) if matrix.shape[0] > SMALL else _SuperLU(matrix, order)
+        return _SuperLU(matrix, order)
     except (RuntimeError, MemoryError) as error:
         raise AnalysisError(
             f"reduction: the matrices cannot be factorised ({error}); check them, or {COARSER}"
@@ -113,43 +112,6 @@ class _SuperLU:
     def free(self) -> None:
         """See `Factor.free`."""
         self._factor = None
-
-
-class _Pardiso:
-    """Factors of one triangle, in an order of PARDISO's own."""
-
-    def __init__(self, matrix: sparse.csc_array, positive: bool) -> None:
-        with needs("large", "pypardiso", "reduction of a large finite-element body"):
-            from pypardiso import PyPardisoSolver
-            from pypardiso.pardiso_wrapper import PyPardisoError
-        self._upper = sparse.csr_matrix(sparse.triu(matrix, format="csr"))
-        self._upper.sort_indices()
-        self._solver: Any = PyPardisoSolver(mtype=2 if positive else -2)
-        self._error, self._positive = PyPardisoError, positive
-        self._solver.set_iparm(1, 1)
-        self._solver.set_iparm(2, 2)  # nested dissection
-        self._run(12, np.zeros((matrix.shape[0], 1)))
-
-    def _run(self, phase: int, force: FloatArray) -> FloatArray:
-        """Carry out a phase."""
-        self._solver.set_phase(phase)
-        try:
-            return np.asarray(self._solver._call_pardiso(self._upper, np.asfortranarray(force)))
-        except self._error as error:
-            raise RuntimeError(str(error)) from error
-
-    @property
-    def not_positive(self) -> int | None:
-        """See `Factor.not_positive`."""
-        return 0 if self._positive else int(self._solver.get_iparm(23))
-
-    def solve(self, force: FloatArray) -> FloatArray:
-        """See `Factor.solve`."""
-        return self._run(33, force) if force.size else force
-
-    def free(self) -> None:
-        """See `Factor.free`."""
-        self._solver.free_memory(everything=True)
 
 
 class HeldBody:
@@ -204,8 +166,7 @@ class HeldBody:
         self._limit = (2.0 * np.pi * cutoff) ** 2
         # Far above rounding, not far above the modes that are wanted.
         self._shift = float(np.clip(self._limit, 1e-8 * self._typical, 1e-4 * self._typical))
-        # PARDISO has an order of its own
-        self._order = elimination_order(stiffness, groups) if stiffness.shape[0] <= SMALL else groups
+        self._order = elimination_order(stiffness, groups)
         self._factor = self._factorised(-self._shift)
         if self._factor.not_positive != 0:
             raise InputError(_NO_BODY)
@@ -259,15 +220,10 @@ class HeldBody:
 
     def _count_below(self, square: float) -> int | None:
         """Count modes with an omega^2 below `square`, by the signs of pivots (Sylvester); None if not known."""
-        large = self.stiffness.shape[0] > SMALL
-        if large:  # two factors at a time would not fit into the memory
-            self._factor.free()
         factor = self._factorised(square)
         below = factor.not_positive
         conditions = np.linalg.eigvalsh(self.averages @ factor.solve(np.ascontiguousarray(self.averages.T)))
         factor.free()
-        if large:
-            self._factor = self._factorised(-self._shift)
         # Each condition takes one negative eigenvalue of the matrix with multipliers for itself.
         return None if below is None else int(below + np.sum(conditions > 0.0) - self.averages.shape[0])
 

@@ -27,7 +27,7 @@ from ehdmaps.arrays import IntArray
 from ehdmaps.errors import InputError
 from ehdmaps.inputs import first_bytes
 from ehdmaps.units import short
-from mbs.flexible.finite_elements import FiniteElementModel, NodePositions, most_freedoms, named, too_many
+from mbs.flexible.finite_elements import MOST_FREEDOMS, TOO_MANY, FiniteElementModel, NodePositions, named
 from mbs.flexible.number_table import NumberTable, check_file, check_last_line, read_numbers
 from mbs.flexible.plan import UNIT_SYSTEMS
 from mbs.flexible.rigid_motion import check_rigid_motion
@@ -289,8 +289,8 @@ def checked_labels(table: NumberTable, whole: IntArray) -> tuple[IntArray, IntAr
 
 def _check_count(path: Path, count: int) -> None:
     """Raise if there are more degrees of freedom than can be reduced."""
-    if count > most_freedoms():
-        raise InputError(f"{path}: got {count} degrees of freedom; {too_many()}")
+    if count > MOST_FREEDOMS:
+        raise InputError(f"{path}: got {count} degrees of freedom; {TOO_MANY}")
 
 
 def _symmetric(table: NumberTable, rows: IntArray, columns: IntArray, size: int, begin: int = 0) -> sparse.csc_array:

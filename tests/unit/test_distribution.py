@@ -73,7 +73,7 @@ def test_the_licence_of_the_fmi_headers_is_the_one_that_each_carries(header):
     assert carried[carried.index(start) :][:length] == whole[whole.index(start) :]
 
 
-_APART = {"nastran": "pyNastran", "large": "pypardiso"}
+_APART = {"nastran": "pyNastran"}
 """Packages of extras that tests do not install, which tell their licence where they are there."""
 
 

@@ -224,7 +224,7 @@ def test_too_many_freedoms(tmp_path, monkeypatch):
     path.write_text("$\n")
     monkeypatch.setattr(nastran_files, "_entries", lambda *given: parts())
     assert read_nastran(path, path, path).stiffness.toarray().tolist() == [[2.0, -1.0], [-1.0, 2.0]]
-    monkeypatch.setattr(nastran_files, "most_freedoms", lambda: 1)
+    monkeypatch.setattr(nastran_files, "MOST_FREEDOMS", 1)
     with pytest.raises(InputError, match="KAAX: got 2 degrees of freedom; allowed: at most"):
         read_nastran(path, path, path)
 

@@ -132,17 +132,6 @@ class TestReduction:
         with pytest.raises(AnalysisError, match=message):
             reduce(model, ends(model), cutoff=10e3)
 
-    def test_a_large_body_is_the_same(self, monkeypatch):
-        pytest.importorskip("pypardiso", reason="the extra large: MKL takes 0.7 GB")
-        model = block()
-        monkeypatch.setattr(held_body, "_DENSE", 0)
-        small = reduce(model, ends(model), cutoff=10e3)
-        monkeypatch.setattr(held_body, "SMALL", 0)
-        large = reduce(model, ends(model), cutoff=10e3)
-        # both to the accuracy of the modes
-        np.testing.assert_allclose(large.stiffness, small.stiffness, atol=1e-7 * np.abs(small.stiffness).max())
-        np.testing.assert_allclose(np.diag(large.mass), np.diag(small.mass), rtol=1e-7)
-
     def test_points(self):
         model = block()
         middle = nodes_in_plane(model, (0.1, 0, 0), (1, 0, 0), 1e-9)

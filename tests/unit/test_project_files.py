@@ -33,7 +33,7 @@ def test_check_runs_what_contributing_promises():
 def test_the_installation_for_tests_has_all_extras():
     extras = PROJECT["optional-dependencies"]
     # those of large packages are installed alone, or by who needs them
-    apart = ("test", "nastran", "large")
+    apart = ("test", "nastran")
     assert extras["test"][0] == f"ehdmaps[{','.join(name for name in extras if name not in apart)}]"
     check = (ROOT / ".ci" / "check").read_text(encoding="utf-8")
     assert f'--no-deps "{extras["nastran"][0]}"' in check
