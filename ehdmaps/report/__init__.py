@@ -3,6 +3,7 @@
 The modules in the order in which data pass through them:
 
 =============  ====================================================================================
+axis           axes of charts: ends, places of values, ticks
 chart          curves over a common axis as inline SVG, with ticks and the numbers that a cursor reads off
 page           the whole document: escaped markup, tables, style, script, and the rule that nothing is loaded
 document.css   how it looks on a screen and on paper

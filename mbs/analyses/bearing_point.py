@@ -260,6 +260,7 @@ def bearing_point(
         balance=balance,
         elements=rollers,
         contacts=contacts,
+        film_error=contacts.film_error,
         loss=rolling_loss(force.bearing, films, contacts, rollers, u, speed, temperature),
         findings=(
             *gauge.findings,

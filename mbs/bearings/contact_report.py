@@ -43,7 +43,7 @@ from ehdmaps.physics.solution import tip_words
 from ehdmaps.physics.surface import Surface
 from ehdmaps.units import LOAD, PRESSURE, SPEED, TEMPERATURE
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.films import ContactState, FilmSource
+from mbs.bearings.films import ContactState, FilmSource, error_of_smallest
 from mbs.bearings.force_at_point import RollerLoads
 from mbs.bearings.laws import DryLaw, Law
 from mbs.model.findings import RingPoint
@@ -86,6 +86,11 @@ class BearingContacts:
     def minimum_film(self) -> FloatArray:
         """Smallest film of each side, (2,) [m]; NaN where no film is known."""
         return np.array([_smallest(side.minimum_film) for side in self.sides])
+
+    @property
+    def film_error(self) -> FloatArray:
+        """Stated error of the smallest film of each side, over it, (2,); NaN where none is stated."""
+        return np.array([error_of_smallest(side.minimum_film, side.film_error) for side in self.sides])
 
 
 def bearing_contacts(

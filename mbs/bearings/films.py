@@ -36,7 +36,7 @@ SIDES = ("inner", "outer")
 """The contacts of a roller, in the order of all arrays."""
 
 _VARIABLES = ("max_pressure", "central_film", "minimum_film")
-_PEAK_ERROR = "max_pressure_error"
+_ERRORS = ("max_pressure_error", "minimum_film_error")
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +56,8 @@ class ContactState:
     pressure_error : array
         Stated error of the largest pressure, see `ehdmaps.physics.solution`; zero for that of Hertz, NaN where none is
         stated.
+    film_error : array or None
+        Stated error of the smallest film, over it, or NaN; None of sources that state none.
     """
 
     hertz_pressure: FloatArray
@@ -64,6 +66,21 @@ class ContactState:
     minimum_film: FloatArray
     rolling_force: FloatArray
     pressure_error: FloatArray
+    film_error: FloatArray | None = None
+
+
+def error_of_smallest(film: FloatArray, error: FloatArray | None) -> float:
+    """Stated error of the smallest of some films, over it; NaN where there is no film, or none is stated.
+
+    Parameters
+    ----------
+    film : array
+        Films [m]; NaN where there is none.
+    error : array or None
+        Their stated errors.
+    """
+    known = np.isfinite(film)
+    return math.nan if error is None or not known.any() else float(error.flat[int(np.nanargmin(film))])
 
 
 class FilmSource(Protocol):
@@ -270,19 +287,19 @@ class MapFilms:
             rolling = rolling_film.rolling_force(*at, self.in_force)
         if entrainment_speed == 0.0 or not np.any(loaded):
             return replace(plain, rolling_force=rolling)
-        ratios = np.full((*load.shape, len(_VARIABLES) + 1), np.nan)
+        ratios = np.full((*load.shape, len(_VARIABLES) + len(_ERRORS)), np.nan)
         ratios[loaded] = self._ratios(side, load[loaded], abs(entrainment_speed), temperature)
         pressure = np.where(loaded, ratios[..., 0] * plain.hertz_pressure, 0.0)
         central, minimum = (ratios[..., part] * plain.central_film for part in (1, 2))
-        error = np.where(loaded, ratios[..., -1], 0.0)
-        state = ContactState(plain.hertz_pressure, pressure, central, minimum, rolling, error)
+        error = np.where(loaded, ratios[..., 3], 0.0)
+        state = ContactState(plain.hertz_pressure, pressure, central, minimum, rolling, error, ratios[..., 4])
         if rolling_film is None:
             return on_supply(state, RIGID_FLOW * central, self.in_force)
         flow = rolling_film.flow(SIDES[side], np.maximum(load, 0.0), entrainment_speed, temperature)
         return on_supply(state, flow, self.in_force)
 
     def _ratios(self, side: int, load: FloatArray, speed: float, temperature: float) -> FloatArray:
-        """Ratios, and the error of the pressure, (n, 4), at positive loads, held at the edges of the map."""
+        """Ratios and errors of pressure and smallest film, (n, 5), at positive loads, held at the edges of the map."""
         lines = self._lines[side]
         speeds, kelvins = lines.nodes
         place = np.log(load) - self._shift(side, speed, temperature)
@@ -325,7 +342,7 @@ class MapFilms:
         reach, known = self._known
         assert reach is not None
         loads, speeds, kelvins = reach.loads, reach.speeds, reach.temperatures
-        both, here = [reach.part(self._points(name)) for name in (*_VARIABLES, _PEAK_ERROR)], reach.part(known)
+        both, here = [reach.part(self._points(name)) for name in (*_VARIABLES, *_ERRORS)], reach.part(known)
         lines = []
         for side in range(len(SIDES)):
             values = np.stack([variable[side] for variable in both], axis=-1)
@@ -342,7 +359,7 @@ class MapFilms:
 
 @dataclass(frozen=True, eq=False)
 class _Lines:
-    """Ratios and the pressure's error (loads, speeds, temperatures, 4) of a contact, over ln(load)."""
+    """Ratios and errors (loads, speeds, temperatures, 5) of a contact, over ln(load)."""
 
     log_load: FloatArray
     nodes: tuple[FloatArray, FloatArray]

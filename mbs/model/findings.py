@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -262,6 +262,8 @@ class RingPoint(WithFindings):
         -d force/d pose and -d force/d velocity.
     findings : tuple of Finding
         What is beyond its laws, and what else is to be known.
+    film_error : array (2,)
+        Stated error of the smallest film of the inner and of the outer raceway, over it; NaN where none is stated.
     failed : bool
         Whether it has no answer: numbers are NaN, and `problems` say why.
     balance : Equilibrium or None
@@ -276,6 +278,7 @@ class RingPoint(WithFindings):
     stiffness: FloatArray
     damping: FloatArray
     findings: tuple[Finding, ...]
+    film_error: FloatArray = field(default_factory=lambda: np.full(2, np.nan))
     failed: bool = False
     balance: Any = None
 

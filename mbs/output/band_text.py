@@ -256,7 +256,9 @@ def quantity_lines(quantities: Sequence[Quantity]) -> list[str]:
             f"{numerics}{exact_text(band, 0)}"
         )
     if column and not all(stated):
-        lines.append("  numerics -: no errors of pressures, films and loads are stated, nor any by a law that has none")
+        lines.append(
+            "  numerics -: no errors of pressures and loads are stated, nor any by a law or by films that have none"
+        )
     return lines
 
 

@@ -16,7 +16,8 @@ from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError
 from ehdmaps.figures import COLOURS
 from ehdmaps.netcdf_structure import DAMAGE, structure_problem
-from ehdmaps.report.chart import GREY, WIDE, Chart, Curve, Points, figure, linear_axis, number, shown
+from ehdmaps.report.axis import linear_axis
+from ehdmaps.report.chart import GREY, WIDE, Chart, Curve, Points, figure, number, shown
 from ehdmaps.report.page import Markup, joined, table, tag
 from ehdmaps.units import RPM
 from mbs.analyses.modes import ModesResult

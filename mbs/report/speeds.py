@@ -9,7 +9,8 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.figures import COLOURS
-from ehdmaps.report.chart import WIDE, Chart, Curve, Shade, figure, linear_axis, log_axis, number, shown
+from ehdmaps.report.axis import linear_axis, log_axis
+from ehdmaps.report.chart import WIDE, Chart, Curve, Shade, figure, number, shown
 from ehdmaps.report.page import Markup, joined, table, tag
 from ehdmaps.units import MOTIONS, RPM
 from mbs.analyses.sweep import CriticalResult

@@ -8,7 +8,8 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.figures import COLOURS, typeset
-from ehdmaps.report.chart import WIDE, Chart, Curve, figure, known, linear_axis, log_axis, number
+from ehdmaps.report.axis import linear_axis, log_axis
+from ehdmaps.report.chart import WIDE, Chart, Curve, figure, known, number
 from ehdmaps.report.page import Markup, joined, table, tag
 from mbs.analyses.lsa import LsaResult
 from mbs.linearised.linear import response_display

@@ -18,7 +18,7 @@ from ehdmaps.physics.solution import tip_words
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.contact_report import BearingContacts, spike_tip
-from mbs.bearings.films import ContactState, DryContacts, FormulaFilms, MapFilms
+from mbs.bearings.films import ContactState, DryContacts, FormulaFilms, MapFilms, error_of_smallest
 
 ROUND_OFF = 1e-12
 OIL = Lubricant.named("FVA3")
@@ -106,16 +106,25 @@ def test_films_between_the_points_of_a_map_against_fresh_solutions(tmp_path):
     assert worst[0] > 0.0
 
 
-def test_the_stated_error_of_the_pressure_is_that_of_the_map(tmp_path):
+def test_stated_errors_are_those_of_the_map(tmp_path):
     """At a point of the map its own; by a formula there is no spike, and an older map states nothing."""
     emap = a_map(tmp_path, "reynolds")
     data = emap.dataset.isel(contact=1, load=1, entrainment_speed=-1, temperature=0)
     at = np.array([float(data["load"])]), float(data["entrainment_speed"]), float(data["temperature"])
     state = MapFilms(emap).state(1, *at)
     assert state.pressure_error[0] == pytest.approx(float(data["max_pressure_error"]), rel=1e-9)
-    assert FormulaFilms(CONTACTS, OIL).state(1, *at).pressure_error[0] == 0.0
-    older = MapFilms(EHDMap(emap.dataset.drop_vars("max_pressure_error")))
-    assert np.isnan(older.state(1, *at).pressure_error[0])
+    assert state.film_error[0] == pytest.approx(float(data["minimum_film_error"]), rel=1e-9)
+    formula = FormulaFilms(CONTACTS, OIL).state(1, *at)
+    assert formula.pressure_error[0] == 0.0 and formula.film_error is None
+    older = MapFilms(EHDMap(emap.dataset.drop_vars(["max_pressure_error", "minimum_film_error"]))).state(1, *at)
+    assert np.isnan(older.pressure_error[0]) and np.isnan(older.film_error[0])
+
+
+def test_the_stated_error_of_a_smallest_film_is_its_own():
+    """Not that of another film, nor of a place without one."""
+    film = np.array([[3.0, np.nan], [1.0, 2.0]])
+    assert error_of_smallest(film, np.array([[0.1, 0.2], [0.3, 0.4]])) == 0.3
+    assert np.isnan(error_of_smallest(film, None)) and np.isnan(error_of_smallest(film * np.nan, film))
 
 
 def test_a_spike_whose_tip_is_missing_is_said():

@@ -19,7 +19,8 @@ from ehdmaps.jobs.show.map_charts import MapCurves
 from ehdmaps.jobs.show.map_report import map_report
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.physics.solution import Status
-from ehdmaps.report.chart import Axis, Chart, Curve, Points, figure, linear_axis, log_axis, path_of, symlog_axis
+from ehdmaps.report.axis import Axis, linear_axis, log_axis, symlog_axis
+from ehdmaps.report.chart import Chart, Curve, Points, figure, path_of
 from ehdmaps.report.page import Markup, Section, document, escaped, joined, tag, write_report
 from tests.cases.reports import Report
 

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from ehdmaps.physics.point.ball_ratings import ball_dynamic_rating
-from ehdmaps.report.chart import WIDE, Chart, Curve, drawing, linear_axis
+from ehdmaps.report.axis import linear_axis
+from ehdmaps.report.chart import WIDE, Chart, Curve, drawing
 from mbs import assemble, modes, parse_scene, statics
 from mbs.linearised.critical import CriticalSpeed
 from mbs.linearised.mode_names import mode_names, ordinal

@@ -36,7 +36,8 @@ from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.rollers.needle_catalogue import needle_designations
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.viscosity import ROELANDS_PRESSURE
-from ehdmaps.report.chart import SEQUENCE, Chart, Curve, figure, log_axis
+from ehdmaps.report.axis import log_axis
+from ehdmaps.report.chart import SEQUENCE, Chart, Curve, figure
 from ehdmaps.report.page import Markup, Moving, Section, document, sentences, tag
 from ehdmaps.table import coordinates, films, nodes, oils
 from ehdmaps.table.fields import FILMS

@@ -21,20 +21,8 @@ from ehdmaps.maps.film_field import FilmField, known_at
 from ehdmaps.maps.rough_layer import BOUNDARY, FILM_PARAMETER, MIXED
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.solution import Status, usable_points
-from ehdmaps.report.chart import (
-    GREY,
-    SEQUENCE,
-    Axis,
-    Chart,
-    Curve,
-    Points,
-    Shade,
-    figure,
-    log_axis,
-    number,
-    shown,
-    symlog_axis,
-)
+from ehdmaps.report.axis import Axis, log_axis, symlog_axis
+from ehdmaps.report.chart import GREY, SEQUENCE, Chart, Curve, Points, Shade, figure, number, shown
 from ehdmaps.report.page import Markup, tag
 from ehdmaps.units import DAMPING, FILM, LOAD, PRESSURE, SPEED, STIFFNESS, TEMPERATURE, Display
 

@@ -97,6 +97,7 @@ class BallPoint(LocatingPoint):
             "minimum_film": minimum,
             "film_offset": moved,
             "film_errors": film_errors,
+            "film_error": film_errors[:, 2],
         }
 
     @property

@@ -19,7 +19,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.oil_supply import FLOODED
 from ehdmaps.physics.point.film_formulas import film_of, hamrock_dowson_central
 from ehdmaps.units import written
-from mbs.bearings.films import FilmSource, FormulaFilms
+from mbs.bearings.films import FilmSource, FormulaFilms, error_of_smallest
 from mbs.bearings.locating.locating_force import Settled
 from mbs.bearings.locating.locating_point import Course, LocatingPoint
 from mbs.bearings.tapered.roller_findings import line_pressures
@@ -76,13 +76,14 @@ class TaperedPoint(LocatingPoint):
     def own(at: Settled, course: Course) -> dict[str, Any]:
         """See `LocatingPoint.own`."""
         force, rollers = at.force, at.loads
-        central, minimum = _lines(force, rollers, course)
+        central, minimum, error = _lines(force, rollers, course)
         rib_pressure, rib_film, slides = _ribs(force, rollers, course)
         carries = rollers.ribs.max(axis=1, initial=0.0) > 0.0
         return {
             "pressure": line_pressures(force, rollers),
             "central_film": central,
             "minimum_film": minimum,
+            "film_error": error,
             "rib_pressure": rib_pressure,
             "rib_film": rib_film,
             "sliding_speed": float(np.max(slides[carries] if np.any(carries) else slides, initial=0.0)),
@@ -121,13 +122,13 @@ def _ribs(force: TaperedForce, rollers: TaperedLoads, course: Course) -> tuple[F
     return pressure, film, slides
 
 
-def _lines(force: TaperedForce, rollers: TaperedLoads, course: Course) -> tuple[FloatArray, FloatArray]:
-    """Smallest central and smallest films of the slices, each with its own radius and speed, (2, Z) each."""
+def _lines(force: TaperedForce, rollers: TaperedLoads, course: Course) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Smallest central and smallest films of slices with their own radius and speed, (2, Z); see `film_error`."""
     geometry, oil, speed = force.geometry, course.oil, force.geometry.entrainment_speed(*course.speeds)
     contacts = geometry.contacts(force.material)
-    central, minimum = np.full((2, 2, rollers.angle.size), np.nan)
+    (central, minimum), error = np.full((2, 2, rollers.angle.size), np.nan), np.full(2, np.nan)
     if oil is None or not speed > 0.0:
-        return central, minimum
+        return central, minimum, error
     lines: FilmSource | None = getattr(course.films, "lines", None)
     supply = force.films.points[0].law.supply if force.films.points else FLOODED
     for side in range(2):
@@ -135,7 +136,9 @@ def _lines(force: TaperedForce, rollers: TaperedLoads, course: Course) -> tuple[
             state = lines.state(side, rollers.slices[side], speed, course.temperature)
             films = (state.central_film, state.minimum_film)
             carries = rollers.slices[side] > CARRIES * rollers.slices[side].max()  # films load all others a little
-            central[side], minimum[side] = (np.fmin.reduce(np.where(carries, film, np.nan), axis=1) for film in films)
+            films = tuple(np.where(carries, film, np.nan) for film in films)
+            central[side], minimum[side] = (np.fmin.reduce(film, axis=1) for film in films)
+            error[side] = error_of_smallest(films[1], state.film_error)
             continue
         for index, place in enumerate(force.positions.tolist()):
             radius = geometry.radius_at(place, side)
@@ -145,4 +148,4 @@ def _lines(force: TaperedForce, rollers: TaperedLoads, course: Course) -> tuple[
             state = FormulaFilms(local, oil, supply).state(side, loads, speed * share, course.temperature)
             central[side] = np.fmin(central[side], state.central_film)
             minimum[side] = np.fmin(minimum[side], state.minimum_film)
-    return central, minimum
+    return central, minimum, error

@@ -111,12 +111,7 @@ def _numerics(point: Any, centre: Mapping[str, FloatArray]) -> dict[str, FloatAr
         parts = np.abs(point.axes) @ sizes[:3, :3] @ np.abs(point.axes).T
         for way, size in (("along", parts[0, 0]), ("across", parts[1, 1]), ("axial", sizes[0, 0])):
             found[f"{name}_{way}"] = np.asarray(size)
-    errors = getattr(point, "film_errors", None)
-    if errors is not None:
-        found["central_film"], found["minimum_film"] = (
-            errors[:, 1] * centre["central_film"],
-            errors[:, 2] * centre["minimum_film"],
-        )
+    found["minimum_film"] = point.film_error * centre["minimum_film"]
     return {name: size for name, size in found.items() if name in centre}
 
 
