@@ -134,11 +134,10 @@ def _lines(force: TaperedForce, rollers: TaperedLoads, course: Course) -> tuple[
     for side in range(2):
         if lines is not None:
             state = lines.state(side, rollers.slices[side], speed, course.temperature)
-            films = (state.central_film, state.minimum_film)
             carries = rollers.slices[side] > CARRIES * rollers.slices[side].max()  # films load all others a little
-            films = tuple(np.where(carries, film, np.nan) for film in films)
-            central[side], minimum[side] = (np.fmin.reduce(film, axis=1) for film in films)
-            error[side] = error_of_smallest(films[1], state.film_error)
+            thick, thin = (np.where(carries, film, np.nan) for film in (state.central_film, state.minimum_film))
+            central[side], minimum[side] = (np.fmin.reduce(film, axis=1) for film in (thick, thin))
+            error[side] = error_of_smallest(thin, state.film_error)
             continue
         for index, place in enumerate(force.positions.tolist()):
             radius = geometry.radius_at(place, side)
