@@ -24,8 +24,9 @@ def tooth_stiffness(
 
     Notes
     -----
-    Of solid discs and the basic rack A of ISO 53, under 100 N/mm of specific load and more; below, flanks are softer,
-    (w/100 N/mm)^(1/4). The standard's regression is for x1 >= x2 and -0.5 <= x1 + x2 <= 2.
+    Of solid discs, virtual teeth z/(cos(beta_b)^2 cos(beta)), and the basic rack A of ISO 53, under 100 N/mm of
+    specific load and more; below, flanks are softer, (w/100 N/mm)^(1/4). The standard's regression is for x1 >= x2 and
+    -0.5 <= x1 + x2 <= 2.
 
     Examples
     --------
@@ -33,7 +34,8 @@ def tooth_stiffness(
     11.85
     """
     helix, (x1, x2) = math.cos(helix_angle), shifts
-    one, other = (z / helix**3 for z in teeth)
+    # teeth of the virtual spur gears, about z/cos(beta)^3
+    one, other = (z / (helix * (1.0 - (math.sin(helix_angle) * math.cos(pressure_angle)) ** 2)) for z in teeth)
     flexibility = 0.04723 + 0.15551 / one + 0.25791 / other
     flexibility += -0.00635 * x1 - 0.11654 * x1 / one - 0.00193 * x2 - 0.24188 * x2 / other
     flexibility += 0.00529 * x1**2 + 0.00182 * x2**2

@@ -106,7 +106,7 @@ def _critical(found: Examination) -> Markup:
         return _none("Speeds were not looked at", found.speeds)
     if found.speeds.critical is None:
         return tag("p", "No body spins: no speed is critical.")
-    return critical_table(found.speeds.critical, found.speeds.critical_names)
+    return critical_table(found.speeds.critical, found.speeds.critical_names, found.banded)
 
 
 def _unbalance(found: Examination) -> Markup:
@@ -115,7 +115,7 @@ def _unbalance(found: Examination) -> Markup:
         return _none("Speeds were not looked at", found.speeds)
     if found.speeds.critical is None:
         return tag("p", "No body spins.")
-    return unbalance_parts(found.speeds.critical)
+    return unbalance_parts(found.speeds.critical, found.banded)
 
 
 def _transfer(found: Examination, names: dict[int, str]) -> list[Markup]:

@@ -21,6 +21,8 @@ from mbs.output.sweep_data import sensed
 from mbs.report.examination import operating_range
 from mbs.scene.fields import FORCE
 
+_BAND = "90 % of what is not known"
+
 SHARP = 2.5
 """Amplification factor, 1/(2 zeta), below which API 617 asks for no margin."""
 
@@ -50,7 +52,7 @@ def asked_margin(damping_ratio: float, above: bool) -> float:
     return (0.1 if above else 0.0) + 0.17 * (1.0 - 1.0 / (factor - 1.5))
 
 
-def critical_table(found: CriticalResult, names: Sequence[str]) -> Markup:
+def critical_table(found: CriticalResult, names: Sequence[str], banded: bool = False) -> Markup:
     """Return the critical speeds with their margins to operation.
 
     Parameters
@@ -59,6 +61,8 @@ def critical_table(found: CriticalResult, names: Sequence[str]) -> Markup:
         Critical speeds.
     names : sequence of str
         Names of the modes of the critical speeds, by where their energy is; empty where that is not known.
+    banded : bool
+        Whether bands of what is not known stand beside the speeds.
     """
     low, high = operating_range(found.model.scene)
     end = float(np.abs(found.sweep.speeds).max())
@@ -67,7 +71,8 @@ def critical_table(found: CriticalResult, names: Sequence[str]) -> Markup:
     if not found.found:
         return tag("p", f"There is no critical speed. {looked}")
     rows, near = [], list[str]()
-    for entry, name in zip(found.found, names, strict=True):
+    bounds = RPM.value(1.0) * found.bounds[:, :2] if banded else np.zeros((len(found.found), 0))
+    for entry, name, reach in zip(found.found, names, bounds, strict=True):
         margin, above = _margin(entry, low, high)
         asked = asked_margin(entry.damping_ratio, above)
         words = "inside" if margin is None else f"{100.0 * margin:.3g} % {'above' if above else 'below'}"
@@ -79,6 +84,7 @@ def critical_table(found: CriticalResult, names: Sequence[str]) -> Markup:
                 f"{name or f'mode {entry.mode + 1}'}{_turning(entry.whirl)}",
                 number(entry.order, 4),
                 number(RPM.value(entry.speed), 5),
+                *([_reach(*reach)] if banded else []),
                 number(entry.eigenvalue.imag / (2.0 * math.pi), 4),
                 number(max(entry.damping_ratio, 0.0), 2),
                 number(factor, 3) if math.isfinite(factor) else "-",
@@ -89,14 +95,19 @@ def critical_table(found: CriticalResult, names: Sequence[str]) -> Markup:
         if short:
             near.append(f"{_rpm(entry.speed)} ({name or f'mode {entry.mode + 1}'}, order {number(entry.order, 4)})")
     heads = (
-        "mode", "order", "speed, rpm", "frequency, Hz", "damping ratio", "amplification", "from operation",
-        "asked by API 617",
+        "mode", "order", "speed, rpm", *((_BAND,) if banded else ()), "frequency, Hz", "damping ratio", "amplification",
+        "from operation", "asked by API 617",
     )  # fmt: skip
     said = f"Too near to operation: {'; '.join(near)}." if near else "All keep the margin that API 617 asks for."
     return joined(
-        table(heads, rows, "Critical speeds", (0, 6, 7)),
+        table(heads, rows, "Critical speeds", (0, len(heads) - 2, len(heads) - 1)),
         tag("p", f"{looked} {said}", class_="warning" if near else "says"),
     )
+
+
+def _reach(low: float, high: float) -> str:
+    """A band in words; a dash where it is not known."""
+    return f"{number(low)} to {number(high)}" if math.isfinite(low) and math.isfinite(high) else "-"
 
 
 def _turning(whirl: float) -> str:
@@ -113,13 +124,15 @@ def _margin(entry: CriticalSpeed, low: float, high: float) -> tuple[float | None
     return (None, False) if entry.speed >= low * (1.0 - CLOSE) else (1.0 - entry.speed / low, False)
 
 
-def unbalance_parts(found: CriticalResult) -> Markup:
+def unbalance_parts(found: CriticalResult, banded: bool = False) -> Markup:
     """Return what loads that turn do: sensors and forces at operation, and the largest in its range, with a chart.
 
     Parameters
     ----------
     found : CriticalResult
         Responses to loads that turn.
+    banded : bool
+        Whether bands of what is not known stand beside the largest ones.
     """
     system, sensors, speeds = found.model.system, found.model.scene.sensors, np.abs(found.speeds)
     if not found.responses:
@@ -128,26 +141,33 @@ def unbalance_parts(found: CriticalResult) -> Markup:
     speed = abs(found.model.scene.speed)
     inside = np.flatnonzero((speeds >= low) & (speeds <= high))
     parts: list[Markup] = []
+    largest = found.largest if banded else {}
     for row, response in enumerate(found.responses):
         seen = np.abs(sensed(system, sensors, found.speeds, response))
         forces = found.dataset["element_force"].values[row]
         curves = [
             (f"sensor {sensor.name}", MOTIONS[sensor_unit(sensor)], seen[:, k]) for k, sensor in enumerate(sensors)
         ]
-        curves += [
-            (f"force on {connected.element.name}", FORCE, forces[:, k])
-            for k, connected in enumerate(system.elements)
-            if forces[:, k].max(initial=0.0) > 0.0
-        ]
+        bands = [largest["response_largest"].of((row, k)) for k in range(len(sensors))] if banded else []
+        for k, connected in enumerate(system.elements):
+            if forces[:, k].max(initial=0.0) > 0.0:
+                curves.append((f"force on {connected.element.name}", FORCE, forces[:, k]))
+                bands += [largest["element_force_largest"].of((row, k))] if banded else []
         rows = []
-        for name, display, values in curves:
+        for index, (name, display, values) in enumerate(curves):
             most = int(np.argmax(values))
             cells = [shown(display, float(np.interp(speed, speeds, values))) if _within(speed, speeds) else "-"]
             if high > low:
                 worst = int(inside[np.argmax(values[inside])]) if inside.size else most
                 cells.append(f"{shown(display, float(values[worst]))} at {_rpm(speeds[worst])}" if inside.size else "-")
-            rows.append((name, *cells, f"{shown(display, float(values[most]))} at {_rpm(speeds[most])}"))
-        heads = ("", f"at {_rpm(speed)}", *(("largest in operation",) if high > low else ()), "largest of all")
+            cells.append(f"{shown(display, float(values[most]))} at {_rpm(speeds[most])}")
+            if banded:
+                cells.append(_reach(*(display.value(float(end)) for end in (bands[index].low, bands[index].high))))
+            rows.append((name, *cells))
+        heads = (
+            "", f"at {_rpm(speed)}", *(("largest in operation",) if high > low else ()), "largest of all",
+            *((_BAND,) if banded else ()),
+        )  # fmt: skip
         words = f"Order {number(response.order, 4)}: {', '.join(response.names)}; amplitudes"
         parts += [
             table(heads, rows, words, tuple(range(len(heads)))),

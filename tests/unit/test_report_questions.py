@@ -12,7 +12,7 @@ import pytest
 from ehdmaps.physics.point.ball_ratings import ball_dynamic_rating
 from ehdmaps.report.axis import linear_axis
 from ehdmaps.report.chart import WIDE, Chart, Curve, drawing
-from mbs import assemble, modes, parse_scene, statics
+from mbs import SweepRange, SweepSettings, assemble, critical, modes, parse_scene, statics
 from mbs.linearised.critical import CriticalSpeed
 from mbs.linearised.mode_names import mode_names, ordinal
 from mbs.model.body import Inertia
@@ -21,7 +21,8 @@ from mbs.report.examination import Examination, operating_range
 from mbs.report.safety import safety_of
 from mbs.report.sketch import ring_of, sketch
 from mbs.report.solid import dressed
-from mbs.report.speeds import asked_margin, critical_table
+from mbs.report.speeds import asked_margin, critical_table, unbalance_parts
+from mbs.unknowns.looks import Band
 from tests.cases.reports import Report
 
 ROTOR = """
@@ -154,3 +155,25 @@ def test_texts_of_curves_stand_apart():
 
 def test_names_of_one_order_share_their_word():
     assert _names(["BPFO A", "BPFO B", "mesh"]) == "BPFO A, B; mesh"
+
+
+@pytest.mark.slow
+def test_the_largest_responses_stand_with_their_bands():
+    """Each about the value of its row, as far as it was made to reach; without bands no such column."""
+    text = ROTOR + '[[unbalances]]\nname = "u"\non = "rotor:a"\nmoment = "30 g mm"\n[[sensors]]\nname = "s"\n'
+    text += 'on = "rotor:b"\ndirection = "y"\nquantity = "displacement"\n'
+    found = critical(assemble(parse_scene(text, "rotor", "rotor"), "hertz"), SweepSettings(SweepRange(200.0, 400.0, 2)))
+    values = found._row(found.responses)
+    reach = np.linspace(0.1, 0.2, values.size) * values
+    band = Band(values, reach, (), np.zeros(values.size, dtype=np.int64), signed=np.ones(values.size, dtype=np.bool_))
+    found.__dict__["bands"] = SimpleNamespace(responses=band)
+    cells = [text for tag, text in Report(str(unbalance_parts(found, banded=True))).texts if tag in ("td", "th")]
+    first = next(k for k, words in enumerate(cells) if words == "sensor s")
+    columns = cells.index("sensor s") - next(k for k, words in enumerate(cells) if words.startswith("at "))
+    rows = [cells[k : k + columns + 1] for k in range(first, len(cells), columns + 1)]
+    assert len(rows) == 3  # the sensor, both bearings
+    for _, _, largest, words in rows:
+        value, (low, high) = float(largest.split()[0]), map(float, words.split(" to "))
+        part = (value - low) / value
+        assert high - value == pytest.approx(value - low, abs=0.02 * value) and 0.08 < part < 0.22  # three digits
+    assert "not known" not in str(unbalance_parts(found))

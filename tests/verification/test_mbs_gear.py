@@ -14,6 +14,7 @@ from mbs.gears.gear import gear_mesh
 from mbs.gears.gear_kernel import TOUCH
 from mbs.gears.pair import GearPair, contact_ratio, pair_harmonics
 from mbs.gears.relief import Relief, course_under_load
+from mbs.gears.teeth import tooth_stiffness
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation, Spring
 from mbs.model.equilibrium import equilibrium
@@ -55,6 +56,33 @@ class TestGeometry:
 
         length = reach(teeth[0], 1.0) + reach(teeth[1], 1.0)
         assert contact_ratio(teeth, ALPHA) == pytest.approx(length / (math.pi * math.cos(ALPHA)), rel=1e-12)
+
+    def test_the_first_example_of_iso_tr_6336_30(self):
+        """ISO/TR 6336-30:2017, example 1, by the numbers that the open program Drivetrain of G. Reboucas quotes of it.
+
+        Its basic rack is D of ISO 53 with a dedendum of 1.4 modules, ours A with 1.25.
+        """
+        pair = dataclasses.replace(
+            PAIR,
+            teeth=(17, 103),
+            module=8e-3,
+            helix_angle=math.radians(15.8),
+            profile_shift=(0.145, 0.0),
+            face_width=0.1,
+            stiffness=None,
+        )
+        rack = (1.0 + 0.5 * (1.2 - 1.4)) / (1.0 + 0.5 * (1.2 - 1.25))
+        single = rack * 1e-9 * tooth_stiffness(pair.teeth, (0.145, 0.0), pair.helix_angle)
+        assert single == pytest.approx(12.37047, rel=1e-6)  # its digits, as of F_t
+        assert 9e3 / (0.5 * pair.transverse_module * 17) == pytest.approx(127352.0, abs=0.5)
+        assert pair.centre_distance == pytest.approx(0.5, abs=5e-6)  # shifts to three digits
+        at, awt = pair.transverse_pressure_angle, pair.working_pressure_angle
+        base = math.asin(math.sin(pair.helix_angle) * math.cos(ALPHA))
+        zone = math.sqrt(2.0 * math.cos(base) * math.cos(awt) / (math.cos(at) ** 2 * math.sin(awt)))
+        assert zone == pytest.approx(2.39533, abs=1e-4)  # of that distance
+        # tip diameters are not quoted: ours are shortened by 0.02 mm
+        assert rack * 1e-9 * pair.mean_stiffness / pair.face_width == pytest.approx(17.46485, rel=1e-3)
+        assert pair.contact_ratios[0] == pytest.approx((17.46485 / 12.37047 - 0.25) / 0.75, rel=1e-3)
 
     @pytest.mark.parametrize("ratio", [1.0, 1.25, 1.58, 2.4, 3.0])
     def test_harmonics_are_those_of_the_number_of_pairs(self, ratio):
