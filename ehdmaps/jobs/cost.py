@@ -2,8 +2,9 @@
 
 By a fast solver some lines tell what all take. By a slow one a point may take a hundred times what another does, and
 does so in corners of the map: points are tried at both ends and in the middle of the axes, in as many processes as the
-run has, and what one takes between them is read between them, linear in its place on the axes. Points without a
-solution are tried and counted like others: most take longest.
+run has, and what one takes between them is read between them: its logarithm is linear in its place on the axes, so that
+a corner that takes a hundred times as long is one, and not a quarter of the map. Points without a solution are tried
+and counted like others: most take longest.
 
 The memory is that of all processes, each at its largest and counted whole, as those had that tried.
 """
@@ -44,6 +45,9 @@ FEW_POINTS, FEW_PLACES = 72, (2, 2, 1)
 BYTES_PER_POINT = 800
 SECONDS_PER_POINT = 1e-4
 """Results, dataset and the copy that is written; keeping and assembling: measured on a map of 200 000 points."""
+
+_LEAST = 0.1
+"""Part of the median that a point counts for which is refused at once: those beside it take their time."""
 
 _LOOKED = 0.02
 """How often the memory of programs is looked at [s]."""
@@ -162,6 +166,7 @@ def cost(tasks: Sequence[LineTask], points: int, processes: int) -> Cost:
     """
     slow = tasks[0].slow
     if slow:
+        tasks = [task for task in tasks if task.entrainment_speed > 0.0] or tasks  # at rest there is nothing to solve
         chosen = _places(tasks, points)
         with worker_pool(1) as pool:  # compiles, where that is due: memory of compiling is none of the run's
             pool.submit(_tried, chosen[0]).result()
@@ -255,7 +260,7 @@ def _spread(axis: Sequence[float], count: int) -> list[float]:
 
 
 def _between(tasks: Sequence[LineTask], chosen: Sequence[LineTask], seconds: Sequence[float]) -> FloatArray:
-    """Time of each task from those of the chosen ones, which are all places of a grid: linear in places on the axes."""
+    """Time of each task from those of the chosen ones, all places of a grid; its logarithm is linear in the places."""
     places = np.array([_axes(task) for task in tasks])
     at = np.array([_axes(task) for task in chosen])
     nodes, wanted = [], []
@@ -264,8 +269,9 @@ def _between(tasks: Sequence[LineTask], chosen: Sequence[LineTask], seconds: Seq
         rank = np.arange(values.size, dtype=float)
         nodes.append(np.interp(np.unique(known), values, rank))
         wanted.append(np.clip(np.interp(axis, values, rank), nodes[-1][0], nodes[-1][-1]))
-    grid = np.array(seconds).reshape([axis.size for axis in nodes])
+    taken = np.array(seconds)
+    grid = np.log(np.maximum(taken, _LEAST * np.median(taken))).reshape([axis.size for axis in nodes])
     for number, axis in enumerate(nodes):
         if axis.size == 1:  # no line through one point
             grid, nodes[number] = np.repeat(grid, 2, axis=number), np.array([axis[0], axis[0] + 1.0])
-    return np.asarray(RegularGridInterpolator(nodes, grid)(np.array(wanted).T))
+    return np.asarray(np.exp(RegularGridInterpolator(nodes, grid)(np.array(wanted).T)))

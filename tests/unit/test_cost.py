@@ -43,13 +43,13 @@ def test_points_are_tried_at_the_ends_and_in_the_middle_of_the_axes():
     assert len(costs._places(tasks, 20)) == 4
 
 
-def test_a_cost_that_is_linear_in_the_places_on_the_axes_is_read_exactly():
+def test_a_cost_whose_logarithm_is_linear_in_the_places_on_the_axes_is_read_exactly():
     """Whatever the axes are: the tried points are nodes, and those between are read between them."""
 
     def dear(task: LineTask) -> float:
         place = costs._axes(task)
         i, j, k = (axis.index(value) for axis, value in zip(every, place, strict=True))
-        return 1.0 + 2.0 * i + 0.5 * j * k + 0.25 * i * j
+        return float(np.exp(0.1 + 0.01 * i + 0.02 * j * k + 0.005 * i * j))
 
     for text in (WIDE, SMALL, map_job('["2 N/mm"]', spaced("1 m/s", "9 m/s", 4), '["40 degC"]')):
         tasks = slow_tasks(text)
@@ -57,6 +57,18 @@ def test_a_cost_that_is_linear_in_the_places_on_the_axes_is_read_exactly():
         chosen = costs._places(tasks, 1000)
         read = costs._between(tasks, chosen, [dear(task) for task in chosen])
         np.testing.assert_allclose(read, [dear(task) for task in tasks], rtol=1e-12)  # round-off
+
+
+def test_one_dear_corner_and_one_refused_point_say_little_of_what_is_far_from_them():
+    tasks = slow_tasks(WIDE)
+    chosen = costs._places(tasks, 468)
+    first = costs._axes(chosen[0])
+    loads = sorted({costs._axes(task)[0] for task in tasks})
+    for at_corner, half_way in ((100.0, 10.0), (1e-9, 0.1**0.5)):  # at a refused point a tenth of the median
+        read = costs._between(tasks, chosen, [at_corner, *[1.0] * 17])
+        by_place = {costs._axes(task): one for task, one in zip(tasks, read, strict=True)}
+        assert by_place[(loads[3], *first[1:])] == pytest.approx(half_way, rel=1e-12)  # round-off
+        assert by_place[(loads[6], *first[1:])] == pytest.approx(1.0, rel=1e-12)
 
 
 def test_what_a_task_takes_is_found_with_its_end():
@@ -109,6 +121,21 @@ def test_the_words():
     tried = "1 points tried over the map took 1 to 1 s and have no solution"
     assert lost.words == f"100 points, not estimated; {tried}: lost"
     assert total([lost]).startswith("  time    not estimated\n")
+
+
+class MovingOnly(Slow):
+    """Solves nothing at rest."""
+
+    def solve_line(self, contact, lubricant, loads, entrainment_speed, temperature):
+        if entrainment_speed == 0.0:
+            raise SolverError("at rest")
+        return super().solve_line(contact, lubricant, loads, entrainment_speed, temperature)
+
+
+@pytest.mark.slow
+def test_points_at_rest_are_not_tried():
+    job = parse_job(map_job('["2 N/mm"]', '["0 m/s", "1 m/s", "2 m/s"]', '["40 degC"]'), "job", "job.toml")
+    assert all(trial.usable for trial in costs.cost(line_tasks(job, MovingOnly()), 100, 1).trials)
 
 
 @pytest.mark.slow
