@@ -162,8 +162,12 @@ def critical_speeds(
                 if not np.all(np.isfinite(ends)) or ends[0] * ends[1] > 0.0 or (ends[1] == 0.0 and ends[0] != 0.0):
                     continue
                 values = damped.eigenvalues[index : index + 2, mode].tolist()
-                number = int(damped.number[mode])
-                here.append(_refined(balance_at, (speeds[index], speeds[index + 1]), values, order, number))
+                span, number = (speeds[index], speeds[index + 1]), int(damped.number[mode])
+                one = _refined(balance_at, span, values, order, number)
+                if taken := [other for other in here if abs(one.speed - other.speed) <= 10.0 * CLOSE * one.speed]:
+                    # coarse speeds led two modes that lie close together to the same one
+                    one = _refined(balance_at, span, values, order, number, [other.eigenvalue for other in taken])
+                here.append(one)
         critical += sorted((one for one in here if one.resonates), key=lambda entry: entry.speed)
     return tuple(critical)
 
@@ -345,8 +349,12 @@ def _refined(
     values: Sequence[complex],
     order: float,
     number: int,
+    taken: Sequence[complex] = (),
 ) -> CriticalSpeed:
-    """Find a critical speed between two speeds by the false position (Illinois), on the mode between their values."""
+    """Find a critical speed between two speeds by the false position (Illinois), on the mode between their values.
+
+    Modes that are nearest to eigenvalues that are `taken` are others.
+    """
     low, high = ends
     low_value, high_value = values
     low_apart, high_apart = (value.imag - order * speed for value, speed in zip(values, ends, strict=True))
@@ -355,7 +363,9 @@ def _refined(
         speed = low + part * (high - low)
         point = solve_modes(balance_at(speed))
         guess = low_value + (high_value - low_value) * (speed - ends[0]) / (ends[1] - ends[0])
-        which = int(np.argmin(np.abs(point.damped.eigenvalues - guess)))
+        apart_from = np.abs(point.damped.eigenvalues - guess)
+        apart_from[[int(np.argmin(np.abs(point.damped.eigenvalues - other))) for other in taken]] = np.inf
+        which = int(np.argmin(apart_from))
         value = complex(point.damped.eigenvalues[which])
         apart = value.imag - order * speed
         if abs(apart) <= CLOSE * abs(value):

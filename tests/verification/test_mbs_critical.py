@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from mbs import SweepRange, SweepSettings, assemble, critical, parse_scene
 from mbs.linearised.critical import order_responses
@@ -78,6 +79,23 @@ class TestJeffcott:
         # Circles with the spin.
         np.testing.assert_allclose(found.dataset["orbit_minor"].values.ravel(), wanted, rtol=1e-9)
         assert [c.speed for c in found.found] == pytest.approx([NATURAL * math.sqrt(1.0 - zeta**2)] * 2, rel=1e-7)
+
+    @pytest.mark.parametrize("points", [2, 3, 40])
+    def test_modes_close_together_keep_apart_at_coarse_speeds(self, points):
+        """Softest near the crossing, both lie below what is between the ends: k(speed)/m = speed^2 + (c/2m)^2."""
+        soft = {"y": "0", "z": "500"}
+        rows = ", ".join(f'{axis} = ["1e5 N/m", "{low} N/m", "1e5 N/m"]' for axis, low in soft.items())
+        speeds = [0.0, NATURAL, 2.0 * NATURAL]
+        table = f'[[springs]]\nname = "s"\non = "disc"\nspeeds = {[f"{speed!r} rad/s" for speed in speeds]}\n'
+        model = assemble(parse_scene(f"{DISC}{table}stiffness = {{ {rows} }}\n", "soft", "soft"))
+        found = critical(model, SweepSettings(SweepRange(20.0, 600.0, points))).found
+
+        def apart(speed, low):
+            stiffness = STIFFNESS + np.interp(speed, speeds, [1e5, low, 1e5])
+            return stiffness / MASS - speed**2 - (0.5 * DAMPING / MASS) ** 2
+
+        wanted = [brentq(apart, 300.0, 340.0, args=(float(low),)) for low in soft.values()]
+        assert [one.speed for one in found] == pytest.approx(wanted, rel=1e-6)  # 1e-7 of the frequency
 
     @pytest.mark.parametrize(("zeta", "peak"), [(0.69, True), (0.72, False)])
     def test_a_mode_without_a_peak_has_no_critical_speed(self, zeta, peak):
