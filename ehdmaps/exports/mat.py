@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from ehdmaps.errors import InputError, MapError
-from ehdmaps.exports.resampled import QUANTITIES, Resampled, differences, resampled, struct
+from ehdmaps.exports.resampled import QUANTITIES, Grid, Resampled, differences, resampled, struct
 from ehdmaps.exports.target import Target, origin
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.schema import DIMS
@@ -168,7 +168,7 @@ def _law(emap: EHDMap, count: int) -> tuple[dict[str, Any], str]:
             raise MapError("a map of standstill alone")
     except MapError as error:
         return {}, f"\nwarning: without a resampled law: {error}"
-    table = resampled(law, count)
+    table = resampled(law, Grid.of(count), Resampled)
     apart = differences(table, law)
     return {"law": struct(table, apart)}, _law_words(table, [float(apart[name][-1]) for name in QUANTITIES])
 

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple, TypeVar
 
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
@@ -115,21 +115,39 @@ class Resampled:
         return np.exp([_linear(self.axes, table, (p, *where)) for table in self.logarithms])
 
 
-def resampled(law: ContactLaw, count: int) -> Resampled:
+class Grid(NamedTuple):
+    """Nodes along approach, speed and temperature, and those of the alignment along speed and temperature."""
+
+    nodes: tuple[int, int, int]
+    fine: tuple[int, int]
+
+    @classmethod
+    def of(cls, count: int) -> Grid:
+        """Nodes in proportion to those along the approach, at least 20."""
+        others = round(_SPEEDS * count)
+        return cls((count, others, others), (round(_FINE * count), round(_FINE_TEMPERATURES * count)))
+
+
+R = TypeVar("R", bound=Resampled)
+
+
+def resampled(law: ContactLaw, grid: Grid, made: type[R]) -> R:
     """Resample a law.
 
     Parameters
     ----------
     law : ContactLaw
         The law, with the policy "error"; some speed of it is above zero.
-    count : int
-        Nodes along the approach, at least 20; along the others in proportion.
+    grid : Grid
+        How many nodes.
+    made : type
+        `Resampled`, or a class of it that is read in another way.
     """
     bottom = -float(law.plain_table.own.start)
-    axes = (_placed(law, bottom, count), *_axes(law, round(_SPEEDS * count), round(_SPEEDS * count)))
-    fine = _axes(law, round(_FINE * count), round(_FINE_TEMPERATURES * count))
+    axes = (_placed(law, bottom, grid.nodes[0]), *_axes(law, *grid.nodes[1:]))
+    fine = _axes(law, *grid.fine)
     alignment = np.array([[_alignment(law, u, T) for T in _kelvins(fine[1])] for u in np.exp(fine[0]).tolist()])
-    return Resampled(law.kind, axes, fine, np.moveaxis(alignment, -1, 0), bottom, _logarithms(law, bottom, *axes))
+    return made(law.kind, axes, fine, np.moveaxis(alignment, -1, 0), bottom, _logarithms(law, bottom, *axes))
 
 
 def differences(table: Resampled, law: ContactLaw) -> dict[Quantity, FloatArray]:

@@ -8,7 +8,7 @@ import pytest
 from ehdmaps.errors import MapError, OutsideMapError
 from ehdmaps.exports.csv import Chosen, table
 from ehdmaps.exports.map_curves import film_between
-from ehdmaps.exports.resampled import differences, resampled
+from ehdmaps.exports.resampled import Grid, Resampled, differences, resampled
 from ehdmaps.jobs import cli
 from ehdmaps.jobs.make.report import reach_lines
 from ehdmaps.maps.edges.reach import known_runs, reach_of
@@ -253,7 +253,7 @@ def test_a_bearing_is_refused_nothing_that_it_does_not_read(corner, tmp_path, mo
 def test_a_resampled_law_ends_where_the_loads_do(corner):
     """Where nothing is known it has no number; elsewhere it is as close to the law as it says."""
     law = corner.law("inner")
-    grid = resampled(law, 40)
+    grid = resampled(law, Grid.of(40), Resampled)
     read = grid.at(np.array([2e-5, 2e-5]), np.array([2.4, 1.2]), np.array([313.15, 340.0]))
     assert np.isnan(read[0, 0]) and read[0, 1] == pytest.approx(law(2e-5, 0.0, 1.2, 340.0)[0], rel=0.02)
     assert all(np.all(np.isfinite(values)) for values in differences(grid, law).values())

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import get_args
 
+from ehdmaps.errors import InputError
 from ehdmaps.exports.c.kernel import BEYOND, KernelOptions, ProfileName, kernel_files
 from ehdmaps.exports.target import Target, check_folder, origin, write_folder
 from ehdmaps.maps.emap import EHDMap
@@ -75,11 +76,20 @@ def write(emap: EHDMap, path: Path, output: Path | None, arguments: argparse.Nam
     path : Path
         File of the map.
     output : Path or None
-        The folder; beside the map if not given.
+        The folder, beside the map if not given; a file NAME.c for a small table in its place.
     arguments : argparse.Namespace
         Options of the target.
     """
     options = options_of(arguments)
+    if output is not None and output.suffix == ".c":
+        from ehdmaps.exports.c.small import write_small
+
+        if options.outside != "error" or options.centrifugal:
+            raise InputError(
+                f"-o: {output} is a small table, which has no --centrifugal, and no --outside but error; allowed: a "
+                "folder, for the whole kernel"
+            )
+        return write_small(emap, path, output, origin(emap, path.name), options.prefix, options.kind)
     folder = output or path.with_name(f"{options.prefix}_{path.stem}")
     check_folder(folder, [path])
     files = kernel_files(emap, options, origin(emap, path.name, BEYOND[options.outside]))
@@ -88,8 +98,8 @@ def write(emap: EHDMap, path: Path, output: Path | None, arguments: argparse.Nam
 
 
 TARGET = Target(
-    summary="law and bearing in C99, one source, one header, no library; Fortran interface",
-    writes="a folder of C sources",
+    summary="law and bearing in C99, one source, one header, no library; Fortran interface; -o NAME.c: a small table",
+    writes="a folder of C sources, or one file",
     read_back_by="gcc, gfortran",
     add_arguments=add_arguments,
     write=write,
