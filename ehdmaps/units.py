@@ -357,6 +357,7 @@ TOLERATED: Mapping[str, Tolerated] = {
             "geometry", "", 0.0, True, Display("%", 100.0), "0 %: as drawn, or 50 % of the errors of an estimate"
         ),
         Tolerated("preload", "N", 1e7, True, Display("N"), "20 N, or 10 %"),
+        Tolerated("stiffness", "", 0.0, True, Display("%", 100.0), "30 %"),
         Tolerated("load", "", 0.0, True, Display("%", 100.0), "5 %"),
         Tolerated("profile", "", 0.0, False, Display("%", 100.0), "0 %: as the scene has it"),
         Tolerated("cage_angle", "rad", 2.0 * math.pi, False, Display("deg", 180.0 / math.pi), "0 deg: as it starts"),

@@ -506,6 +506,8 @@ class Spring:
         Both places.
     stiffness, damping : array, shape (6, 6)
         Matrices of the six displacements of `on` against `against` [N/m, N m/rad; with s]; symmetric.
+    assumed : bool
+        Whether nobody stated its stiffness.
     """
 
     name: str
@@ -513,6 +515,7 @@ class Spring:
     against: str
     stiffness: FloatArray
     damping: FloatArray = field(default_factory=lambda: np.zeros((6, 6)))
+    assumed: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from mbs.scene.surroundings import Built, Surroundings
 
 
+ASSUMED = 3e8
+"""Stiffness along each axis of a seat or foot of which nobody knows it [N/m]; see `mbs.unknowns.held_open`."""
+
 _PARTS = 32
 """Lines in place of a cubic between two speeds: they leave a thousandth of its bulge."""
 
@@ -63,12 +66,13 @@ def read_spring(section: Table, name: str) -> Spring | MatrixSpec | None:
         A spring where both matrices are symmetric and hold at any speed.
     """
     on, against = fields.places(section)
-    found = _read(section)
+    assumed = section.get("stiffness") == "assumed" and "speeds" not in section
+    found = _read(section, assumed)
     if on is None or found is None:
         return None
     speeds, stiffness, damping = found
     if speeds.size == 1 and all(np.array_equal(table[0], table[0].T) for table in (stiffness, damping)):
-        return Spring(name, on, against, stiffness[0], damping[0])
+        return Spring(name, on, against, stiffness[0], damping[0], assumed)
     return MatrixSpec(name, on, stiffness, damping, against, speeds)
 
 
@@ -126,12 +130,15 @@ def build_matrices(spec: MatrixSpec, surroundings: Surroundings) -> Built:
     return Built(element, element)
 
 
-def _read(section: Table) -> tuple[FloatArray, FloatArray, FloatArray] | None:
-    """Read speeds and both matrices."""
+def _read(section: Table, assumed: bool = False) -> tuple[FloatArray, FloatArray, FloatArray] | None:
+    """Read speeds and both matrices, or take an assumed stiffness."""
     speeds = _speeds(section)
     count = 1 if speeds is None else speeds.size
     section.get("stiffness", '{ y = "1e7 N/m", y_z = "2e6 N/m", z = ... }')
-    stiffness = fields.matrices(section, "stiffness", "N/m", "N m/rad", count)
+    if assumed:
+        stiffness: FloatArray | None = np.diag([ASSUMED] * 3 + [0.0] * 3)[None]
+    else:
+        stiffness = fields.matrices(section, "stiffness", "N/m", "N m/rad", count)
     damping = fields.matrices(section, "damping", "N s/m", "N m s/rad", count, least=0.0)
     between = section.choice("between", ("line", "cubic"))
     if between is not None and "speeds" not in section:

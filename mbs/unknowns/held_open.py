@@ -15,6 +15,7 @@ oil layer              half to twice           what brings oil back to a track i
 inner geometry         what an estimate states `mbs.unknowns.geometry`
 profile of rollers     iso, or straight        assumed
 preload of springs     20 %                    assumed; loads with "preload" in their name, and axial offsets
+stiffness, assumed     a third to three times  of seats and feet that nobody stated: orders of bolted joints, no source
 cage angle             a pitch, each bearing   cages stand anywhere
 loads                  none                    held, and said
 oil supply             alternatives, no band   flooded where none is stated; beside it oil bath, oil air, grease
@@ -63,6 +64,9 @@ CAGES = 8
 _AS_STATED = "as stated"
 
 
+SOFTER = 3.0
+"""Factor by which an assumed stiffness may be smaller or larger."""
+
 SUPPLIES = ("oil bath", "oil air", "grease")
 """Oil supplies that a machine may have where none is stated, so that its films are flooded."""
 
@@ -102,6 +106,7 @@ def held_open(scene: Scene, films: bool = True) -> tuple[Unknown, ...]:
         *geometries(scene),
         *profiles(scene),
         *_preload(scene),
+        *_springs(scene),
         *_loads(scene),
         *_cages(scene),
     )
@@ -269,6 +274,22 @@ def _preload(scene: Scene) -> Iterator[Unknown]:
             offsets = [(1.0 + by) * entry.axial_offset for by in (-part, part)]
             looks, one = looks_of([_at(_with_offset, scene, entry.name, offset) for offset in offsets])
             yield Unknown(f"axial offset of {entry.name}", "preload", held, why, looks, one)
+
+
+def _springs(scene: Scene) -> Iterator[Unknown]:
+    """Springs whose stiffness nobody stated."""
+    stated = tolerance_of(scene, "stiffness")
+    least, most = (1.0 / SOFTER, SOFTER) if stated is None else (1.0 - stated.size, 1.0 + stated.size)
+    why = "not stated: assumed" if stated is None else _AS_STATED
+    for spring in scene.springs if most > 1.0 else ():
+        if spring.assumed:
+            softer, stiffer = (dataclasses.replace(spring, stiffness=by * spring.stiffness) for by in (least, most))
+            looks = tuple(
+                dataclasses.replace(scene, springs=[end if one is spring else one for one in scene.springs])
+                for end in (softer, stiffer)
+            )
+            held = f"{1e-6 * least * spring.stiffness[0, 0]:.3g} to {1e-6 * most * spring.stiffness[0, 0]:.3g} N/um"
+            yield Unknown(f"stiffness of {spring.name}", "stiffness", held, why, looks)
 
 
 def _loads(scene: Scene) -> Iterator[Unknown]:

@@ -180,3 +180,33 @@ def test_what_files_and_commands_refuse(tmp_path, capsys):
     assert "held open: clearance of left 20 um +-3 um (as stated), clearance of right 10 um +-5 um (stated bare" in said
     assert "70 degC" in said and "    temperature +-" not in said  # which no dry law feels
     assert "    outer groove of right 0.515 to 0.53 of the ball (estimated from a catalogue)\n" in said
+
+
+SEAT = """
+[[bodies]]
+name = "foot"
+freedoms = ["x", "y", "z"]
+mass = "1 kg"
+polar_inertia = "1e-3 kg m^2"
+transverse_inertia = "1e-3 kg m^2"
+[[springs]]
+name = "bolts"
+on = "foot"
+stiffness = "assumed"
+"""
+
+
+def test_an_assumed_stiffness_is_open_to_a_factor_of_three():
+    one = parse_scene(MACHINE.format(top="", left="") + SEAT, "machine", "machine.toml")
+    (spring,) = one.springs
+    np.testing.assert_array_equal(spring.stiffness, np.diag([3e8, 3e8, 3e8, 0.0, 0.0, 0.0]))
+    (found,) = [unknown for unknown in held_open(one) if unknown.group == "stiffness"]
+    assert found.text == "stiffness of bolts 100 to 900 N/um (not stated: assumed)"
+    assert [look.springs[0].stiffness[1, 1] for look in found.looks] == pytest.approx([1e8, 9e8], rel=1e-12)
+    for said, ends in (("+- 20 %", [2.4e8, 3.6e8]), ("+- 0 %", [])):
+        better = known(one, read_statements(f"stiffness = {said}"))
+        looks = [look for unknown in held_open(better) if unknown.group == "stiffness" for look in unknown.looks]
+        assert [look.springs[0].stiffness[2, 2] for look in looks] == pytest.approx(ends, rel=1e-12)
+    with pytest.raises(InputError, match="stiffness"):
+        speeds = SEAT + 'speeds = ["0 rpm", "1 rpm"]\n'
+        parse_scene(MACHINE.format(top="", left="") + speeds, "machine", "machine.toml")
