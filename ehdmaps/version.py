@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from pathlib import Path
 
 from ehdmaps.provenance import source_state
@@ -35,8 +36,9 @@ def version(package: str = NAME) -> str:
     return "+".join(filter(None, (number, source_state(root)))) if number else NOT_INSTALLED
 
 
+@functools.cache
 def _installed(package: str) -> str:
-    """Version of an installed package, or an empty text."""
+    """Version of an installed package, or an empty text: looked up once a process, which has loaded what it loaded."""
     from importlib import metadata
 
     try:

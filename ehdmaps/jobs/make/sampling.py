@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import NamedTuple
 
 import numpy as np
@@ -115,13 +116,22 @@ def draw_in_valley(job: Job, rng: np.random.Generator) -> SamplePoint | None:
 
     Arguments as of `draw`.
     """
-    contact, _, speed, temperature = draw(job, rng)
-    load = _valley_load(job, contact, speed, temperature) * float(np.exp(rng.uniform(*VALLEY_WIDTH)))
-    return SamplePoint(contact, load, speed, temperature) if min(job.loads) < load < max(job.loads) else None
+    return _in_valley(job, draw(job, rng), rng.uniform(*VALLEY_WIDTH))
+
+
+def _in_valley(job: Job, drawn: SamplePoint, place: float) -> SamplePoint | None:
+    """A point with its load at a place of the damping valley, ln(M/M_valley); None where the map's loads end before."""
+    state, contact = job.lubricant.at(drawn.temperature), drawn.contact
+    alpha = state.pressure_viscosity.pressure_viscosity
+    unit, L = moes_groups(1.0, drawn.speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
+    load = float(valley_load_number(L)) / float(unit) * float(np.exp(place))
+    return drawn._replace(load=load) if min(job.loads) < load < max(job.loads) else None
 
 
 def draw_valley_points(job: Job, count: int, rng: np.random.Generator) -> list[SamplePoint]:
     """Draw points with loads in the damping valley: so many, or fewer where the map's loads hardly reach it.
+
+    All tries are drawn, so that what is drawn next is the same for any job; those beyond the count stay unread.
 
     Parameters
     ----------
@@ -132,7 +142,9 @@ def draw_valley_points(job: Job, count: int, rng: np.random.Generator) -> list[S
     rng : numpy.random.Generator
         Source of chance.
     """
-    return [point for _ in range(MOST_TRIES * count) if (point := draw_in_valley(job, rng)) is not None][:count]
+    tries = [(draw(job, rng), rng.uniform(*VALLEY_WIDTH)) for _ in range(MOST_TRIES * count)]
+    points = (point for tried in tries if (point := _in_valley(job, *tried)) is not None)
+    return list(itertools.islice(points, count))
 
 
 def draw_sample(job: Job, count: int, rng: np.random.Generator) -> tuple[SamplePoint, ...]:
@@ -163,11 +175,3 @@ def log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
         Ends, > 0.
     """
     return float(np.exp(rng.uniform(np.log(low), np.log(high))))
-
-
-def _valley_load(job: Job, contact: LineContact, speed: float, temperature: float) -> float:
-    """Load at the bottom of the damping valley [N/m]."""
-    state = job.lubricant.at(temperature)
-    alpha = state.pressure_viscosity.pressure_viscosity
-    unit, L = moes_groups(1.0, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
-    return float(valley_load_number(L)) / float(unit)
