@@ -12,6 +12,7 @@ else of the packages. So an edit of a command, a report or a page does not compi
 from __future__ import annotations
 
 import functools
+import glob
 import hashlib
 import os
 import platform
@@ -128,11 +129,16 @@ def _sources(root: Path) -> dict[str, bytes]:
     """Contents of the packages' Python, C and data files by their names, in order; none where one cannot be read."""
     data = ("ehdmaps/kernel/c/**/*.[ch]", "ehdmaps/physics/shipped/*.*", "ehdmaps/maps/*.toml")
     patterns = (*(f"{package}/**/*.py" for package in PACKAGES), *data)
-    names = sorted(path.relative_to(root).as_posix() for pattern in patterns for path in root.glob(pattern))
+    # texts, not paths: what is kept by this hash is read in a fraction of what objects for all files take
+    found = (glob.glob(pattern, root_dir=root, recursive=True, include_hidden=True) for pattern in patterns)
+    sources = {}
     try:
-        return {name: (root / name).read_bytes() for name in names}
+        for name in sorted(each.replace(os.sep, "/") for names in found for each in names):
+            with open(os.path.join(root, name), "rb", buffering=0) as file:
+                sources[name] = file.read()
     except OSError:
         return {}
+    return sources
 
 
 def _hashed(sources: Mapping[str, bytes]) -> str:

@@ -33,6 +33,14 @@ def git(folder, *arguments):
     return subprocess.run(command, capture_output=True, text=True, check=True, env=environment).stdout.strip()
 
 
+@pytest.fixture(autouse=True)
+def looked_up_anew():
+    """Versions of packages are looked up once a process, here once a test."""
+    ehdmaps.version._installed.cache_clear()
+    yield
+    ehdmaps.version._installed.cache_clear()
+
+
 @pytest.fixture
 def copy(tmp_path, monkeypatch):
     """A small copy of the distribution, not a clone yet, from which the version is looked up."""
