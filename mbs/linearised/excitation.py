@@ -230,11 +230,9 @@ class _Bearing:
         flat = np.moveaxis(by_row, (0, 3), (1, 2)).reshape(s.size, self._angles.size, -1)
         return np.asarray(np.matmul(self._to_orders, flat).reshape(s.size, self._to_orders.shape[0], -1, 2, 6))
 
-    def _harmonics(self, table: int) -> tuple[IntArray, ComplexArray]:
+    def _harmonics(self, values: FloatArray) -> tuple[IntArray, ComplexArray]:
         """Numbers and amplitudes of the waves of a table, Re[c exp(i n angle)], those that matter."""
-        nodes = self._data.nodes
-        values = self._data.given("table")[table * nodes : (table + 1) * nodes, 0]
-        found = 2.0 * np.fft.rfft(values) / nodes
+        found = 2.0 * np.fft.rfft(values) / values.size
         found[0] *= 0.5
         size = np.abs(found[:-1])
         kept = np.flatnonzero(size > max(_LEAST * size.max(), np.sort(size)[-min(_MOST_HARMONICS, size.size)] * 0.999))
@@ -249,7 +247,7 @@ class _Bearing:
 
     def _add_ring(self, side: int, table: int) -> None:
         """Add the waves of a ring."""
-        waves, amplitudes = self._harmonics(table)
+        waves, amplitudes = self._harmonics(self._data.given("table")[table, :, 0])
         ring, passing = self._rings[side], self._cage - self._rings[side]
         spectrum = self._coefficients(waves * passing)[..., side, :].sum(axis=2)
         for n, amplitude, by_order in zip(waves.tolist(), amplitudes, spectrum, strict=True):
@@ -264,7 +262,7 @@ class _Bearing:
     def _add_elements(self, tables: Any) -> None:
         """Add the waves of rolling elements."""
         for table in np.unique(tables[tables >= 0]).tolist():
-            waves, amplitudes = self._harmonics(table)
+            waves, amplitudes = self._harmonics(self._data.given("own")[:, table, 0])
             spectrum = self._coefficients(waves * self._own)
             half = np.exp(1j * np.pi * waves)[:, None, None, None]
             both = (spectrum[..., 0, :] * half + spectrum[..., 1, :]) * amplitudes[:, None, None, None]

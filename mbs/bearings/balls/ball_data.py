@@ -18,8 +18,8 @@ loads of the inner and the outer contact [N], contact angles, approaches [m], di
 the contacts on their tables; speed around the axis [rad/s], centrifugal load, tractions at the outer and at the inner
 raceway [N]."""
 
-START = 8
-"""Numbers by which a ball begins: `ehd_ball_start`, its centre, that of the inner groove there, and S (4)."""
+START = 10
+"""Numbers by which a ball begins: `ehd_ball_start`, its centre, that of the inner groove there, S (4), and deviations (2)."""
 
 
 class BallShape(NamedTuple):

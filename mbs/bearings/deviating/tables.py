@@ -154,16 +154,18 @@ class DeviationData(Record):
     """Deviations of a bearing as C takes them, `ehd_deviations`; zero is a bearing without any."""
 
     _fields_ = (
-        *((name, ctypes.c_int64) for name in ("elements", "nodes")),
+        *((name, ctypes.c_int64) for name in ("elements", "nodes", "rings", "owned")),
         ("start", ctypes.c_double),
         ("turns", ctypes.c_double * 4),
         ("tables", integers),
-        *((name, numbers) for name in ("places", "sizes", "table", "added", "moment")),
+        *((name, numbers) for name in ("places", "sizes", "table", "own", "added", "moment")),
     )
     shapes: ClassVar = {
         "tables": ("elements", 3),
         "places": ("elements",),
         "sizes": ("elements",),
+        "table": ("rings", "nodes", 2),
+        "own": ("nodes", "owned", 2),
         "added": ("elements", 2, 2),
         "moment": (2,),
     }
@@ -238,7 +240,7 @@ def deviation_data(
     finest += [_PER_SPALL * 2.0 * math.pi * radii[spall.on] / spall.length for spall in deviations.spalls]
     nodes = 2 ** math.ceil(math.log2(min(max(_FEWEST, *finest, 0.0), _MOST)))
     angle = 2.0 * math.pi * np.arange(nodes) / nodes
-    rows: list[FloatArray] = []
+    rows: tuple[list[FloatArray], list[FloatArray]] = [], []
     tables = np.full((places.size, 3), -1, dtype=np.int64)
     for column, part in enumerate(PARTS):
         for number in range(int(elements.max()) + 1) if part == "elements" else (0,):
@@ -253,19 +255,23 @@ def deviation_data(
                     found += _hole(spall, radii[part], diameter, angle)
             if not np.any(found):
                 continue
-            tables[elements == number if part == "elements" else slice(None), column] = len(rows)
-            rows.append(found * [1.0, 2.0 * math.pi / nodes])
+            own = part == "elements"
+            tables[elements == number if own else slice(None), column] = len(rows[own])
+            rows[own].append(found * [1.0, 2.0 * math.pi / nodes])
     sizes = np.zeros(int(elements.max()) + 1)
     sizes[: len(deviations.sizes)] = deviations.sizes
     return checked(DeviationData, "ehd_deviations")(
         elements=places.size,
         nodes=nodes,
+        rings=len(rows[0]),
+        owned=len(rows[1]),
         start=start,
         turns=np.array(turns),
         tables=tables,
         places=places * (nodes / (2.0 * math.pi)),
         sizes=0.5 * sizes[elements],
-        table=np.ascontiguousarray(rows).reshape(-1, 2),
+        table=np.array(rows[0]).reshape(-1, nodes, 2),
+        own=np.ascontiguousarray(np.moveaxis(np.array(rows[1]).reshape(-1, nodes, 2), 0, 1)),
         added=np.zeros((places.size, 2, 2)),
         moment=np.full(2, math.nan),
     )

@@ -52,7 +52,7 @@ typedef struct ehd_ball {
 typedef struct ehd_balls {
     double rest; /* approach at the outer raceway under the centrifugal load alone [m] */
     ehd_ball ball[EHD_BALLS];
-    double start[EHD_BALLS][8]; /* where they start at the next call */
+    double start[EHD_BALLS][10]; /* where they start at the next call */
 } ehd_balls;
 
 /* Make a bearing.

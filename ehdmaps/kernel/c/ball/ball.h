@@ -32,9 +32,10 @@ typedef struct ehd_ball_drive {
     double axis;                    /* about which a ball turns, EHD_AXIS_... */
 } ehd_ball_drive;
 
-/* Where a ball begins: its centre at the last call, d there [m], and S = dv/dd; all zero or NaN from nothing. */
+/* Where a ball begins: its centre at the last call, d there [m], S = dv/dd, and what deviations added to both contacts [m];
+ * all zero or NaN from nothing. */
 typedef struct ehd_ball_start {
-    double centre[2], groove[2], share[4];
+    double centre[2], groove[2], share[4], added[2];
 } ehd_ball_start;
 
 /* A ball in balance. */

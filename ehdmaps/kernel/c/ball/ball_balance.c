@@ -16,7 +16,8 @@
  *
  *     stiffness  K_i - K_i S = S' (M - L),        damping  C_i - C_i S - S' C_i + S' (C_i + C_o) S.
  *
- * A ball begins where it was, moved by S as d has moved since.
+ * A ball begins where it was, moved by S as d has moved since. Approaches a_i and a_o that deviations add are those of grooves
+ * that come closer: d moves by e_i a_i + e_o a_o, and v is seen from an outer groove that has moved by -e_o a_o.
  *
  * A. B. Jones, Journal of Basic Engineering 82 (1960) 309. T. A. Harris, M. N. Kotzalas, Advanced Concepts of Bearing
  * Technology, CRC, 2007, chapter 3.
@@ -421,6 +422,8 @@ EHD_INLINE void ball_answer(const ball_given *of, const ball_state *s, ehd_ball_
     out->centrifugal = s->centrifugal;
     out->traction = (1.0 - s->share) * s->traction;
     out->inner_traction = inner_traction;
+    start->added[0] = of->added ? of->added[0] : 0.0;
+    start->added[1] = of->added ? of->added[2] : 0.0;
     if (of->added) of->by_rates[3] = qi * of->added[1] + s->qo * of->added[3];
     if (qi <= 0.0 || determinant == 0.0) {
         for (int i = 0; i < 4; i++) out->stiffness[i] = out->damping[i] = 0.0;
@@ -488,8 +491,19 @@ EHD_INLINE int ball_place(const ball_given *of, double share, ehd_ball_start *st
         out->inner[1] = out->outer[1] = of->dr * one;
         return 1;
     }
-    const double mx = of->dx - start->groove[0], mr = of->dr - start->groove[1], *by = start->share;
-    const double x = start->centre[0] + by[0] * mx + by[1] * mr, r = start->centre[1] + by[2] * mx + by[3] * mr;
+    double mx = of->dx - start->groove[0], mr = of->dr - start->groove[1], x = start->centre[0], r = start->centre[1];
+    const double *by = start->share, reach = sqrt(x * x + r * r);
+    if (of->added && reach > 0.0) { /* as grooves do that come closer by it */
+        const double ix = start->groove[0] - x, ir = start->groove[1] - r, more = of->added[2] - start->added[1];
+        const double part = (of->added[0] - start->added[0]) / most(sqrt(ix * ix + ir * ir), 1e-300);
+        const double ox = more / reach * x, orr = more / reach * r;
+        mx += part * ix + ox;
+        mr += part * ir + orr;
+        x -= ox;
+        r -= orr;
+    }
+    x += by[0] * mx + by[1] * mr;
+    r += by[2] * mx + by[3] * mr;
     int found = 0;
     if (x * x + r * r > 0.0) {
         s = ball_state_at(of, x, r);

@@ -223,35 +223,49 @@ static void begin_step(const ehd_run *run, const ehd_linear *linear, const ehd_n
     dense_times(m, n, linear->ports, r->right, r->unmoved + m);
 }
 
-/* Newton on the forces of the elements; its status. The forces are in unknown, the acceleration in found. */
+/* Where the forces of the elements in unknown bring ports and modes: motion, found. */
+static void move_step(const ehd_run *run, const ehd_numbers *numbers, const step_room *r) {
+    const int64_t n = run->n, m = run->m;
+    dense_times(m, m, r->receptance, r->unknown, r->short_of);
+    for (int64_t i = 0; i < m; i++) {
+        r->motion[i] = r->unmoved[i] + numbers->by_q * r->short_of[i];
+        r->motion[m + i] = r->unmoved[m + i] + numbers->by_v * r->short_of[i];
+    }
+    memcpy(r->found, r->free, sizeof(double) * (size_t)n);
+    for (int64_t i = 0; i < m; i++) {
+        const double pull = r->unknown[i], *row = r->reach + i * n;
+        for (int64_t j = 0; j < n; j++) r->found[j] += pull * row[j];
+    }
+}
+
+/* Newton on the forces of the elements; its status. The forces are in unknown, the acceleration in found. What is left of
+ * the forces falls at least as it fell the last time: where that is enough the last change is made without a look at it. */
 static int solve_step(const ehd_run *run, const ehd_linear *linear, const ehd_numbers *numbers, const ehd_block *blocks,
                       int64_t count, const ehd_moment *at, const step_room *r, ehd_answers *answers) {
     const int64_t n = run->n, m = run->m;
-    double *u = r->unknown, largest = dense_norm(n, r->load);
+    double *u = r->unknown, largest = dense_norm(n, r->load), before = 0.0;
     for (int64_t k = 0; k < numbers->iterations; k++) {
         ++*run->counter;
-        dense_times(m, m, r->receptance, u, r->short_of);
-        for (int64_t i = 0; i < m; i++) {
-            r->motion[i] = r->unmoved[i] + numbers->by_q * r->short_of[i];
-            r->motion[m + i] = r->unmoved[m + i] + numbers->by_v * r->short_of[i];
-        }
+        move_step(run, numbers, r);
         for (int64_t e = 0; e < count; e++) {
             const int reached = blocks[e].answer(blocks[e].data, at, r->motion, answers);
             if (reached != EHD_FOUND) return reached;
         }
-        memcpy(r->found, r->free, sizeof(double) * (size_t)n);
-        for (int64_t i = 0; i < m; i++) {
-            const double pull = u[i], *row = r->reach + i * n;
-            for (int64_t j = 0; j < n; j++) r->found[j] += pull * row[j];
-        }
         for (int64_t i = 0; i < m; i++) r->short_of[i] = u[i] - r->force[i];
         const double forces = dense_size(m, linear->size, r->force), inertia = dense_norm(n, r->found);
+        const double left = dense_size(m, linear->size, r->short_of);
         largest = forces > largest ? forces : largest;
         largest = inertia > largest ? inertia : largest;
-        if (dense_size(m, linear->size, r->short_of) <= numbers->residual * largest) return EHD_FOUND;
+        if (left <= numbers->residual * largest) return EHD_FOUND;
+        const int last = left * left <= numbers->residual * largest * before;
         ports_jacobian(m, linear->alone, r->slopes, r->receptance, r->jacobian);
         if (!ehd_eliminate(m, r->jacobian, r->short_of)) break;
         for (int64_t i = 0; i < m; i++) u[i] -= r->short_of[i];
+        if (last) {
+            move_step(run, numbers, r);
+            return EHD_FOUND;
+        }
+        before = left;
     }
     return EHD_NO_SOLUTION;
 }

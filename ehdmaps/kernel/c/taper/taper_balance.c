@@ -21,7 +21,10 @@
 
 #define TAPER_STEPS 80
 #define TAPER_CUTS 40
-#define TAPER_BALANCE 1e-13
+/* Force out of balance over the sizes of its parts at which Newton's method ends: its last step is gone by the derivatives
+ * alone, so that forces are exact to the square of it, stiffness and damping to itself. */
+#define TAPER_BALANCE 1e-9
+#define TAPER_ROUND_OFF 1e-13 /* the same of a way */
 #define TAPER_ROUGH 1e-9
 #define TAPER_NOTHING 1e-10 /* load below which a contact counts as unloaded [N] */
 #define TAPER_NEAR 0.1      /* part of the forces that may be left where Newton's method begins at once */
@@ -158,7 +161,7 @@ static int taper_newton(const taper_given *of, taper_state *s) {
             for (int i = 0; i < 3; i++) trial[i] = place[i] + part * step[i];
             taper_state_at(of, trial, s);
             const double here = taper_dot(s->rest, step);
-            if (fabs(here) <= TAPER_BALANCE * s->size * reach) break;
+            if (fabs(here) <= TAPER_ROUND_OFF * s->size * reach) break;
             if (here >= -0.5 * slope && (here <= 0.5 * slope || high == DBL_MAX)) break;
             /* an idle roller meets its contacts as walls: they are come to from behind, by their stiffness there */
             if (here < 0.0) {
@@ -175,6 +178,58 @@ static int taper_newton(const taper_given *of, taper_state *s) {
         if (!(part * reach > 1e-16 * furthest)) break;
     }
     return taper_left(s, of->arm) <= TAPER_ROUGH * s->size + 10.0 * TAPER_NOTHING;
+}
+
+/* Move a contact by its derivatives; sign: of the outer ring 1, of the inner one -1. */
+static void taper_moved(taper_sums *sum, double x, double r, double sign, const double step[3]) {
+    const double along = sign * (x * step[0] + r * step[1]), turn = sign * step[2];
+    sum->q = most(sum->q + sum->k[0] * along + sum->k[1] * turn, 0.0);
+    sum->qb += sum->k[1] * along + sum->k[2] * turn;
+}
+
+/* Newton's last step, with loads by their derivatives. */
+static void taper_last_step(const taper_given *of, taper_state *s) {
+    const ehd_taper_data *data = of->data;
+    double inner[3][3], outer[3][3], whole[3][3], step[3];
+    taper_matrices(data, s, 0, inner, outer);
+    taper_whole(of, inner, outer, whole);
+    taper_solve(whole, s->rest, step);
+    for (int i = 0; i < 3; i++) s->place[i] += step[i];
+    taper_moved(&s->line[0], data->cone[0], data->cone[1], -1.0, step);
+    taper_moved(&s->line[1], data->cup[0], data->cup[1], 1.0, step);
+    for (int64_t m = 0; m < data->ribs; m++) {
+        const ehd_taper_rib *at = taper_rib_of(data, m);
+        taper_moved(&s->rib[m], at->x, at->r, at->outer != 0.0 ? 1.0 : -1.0, step);
+    }
+}
+
+/* What rates of deviations do: the roller follows to first order, M V' = r_i times the sums of k n of the cone less those
+ * of the cup times r_o, and forces of the dampers, by the sums A_c and B_c, come to the ring by F_i - S' (F_i - F_o). */
+static void taper_by_rates(const taper_given *of, const taper_state *s, const ehd_taper_roller *roller, double whole[3][3],
+                           double inner[3][3], double outer[3][3]) {
+    const ehd_taper_data *data = of->data;
+    const double rate[2] = {of->added[1], of->added[3]}, *normal[2] = {data->cone, data->cup};
+    double(*part[2])[3] = {inner, outer}, spring[2][3], damper[2][3], force[2][3], pushed[3], v[3];
+    for (int side = 0; side < 2; side++)
+        for (int i = 0; i < 3; i++) {
+            const taper_sums *sum = &s->line[side];
+            spring[side][i] = rate[side] * (i < 2 ? sum->k[0] * normal[side][i] : sum->k[1]);
+            damper[side][i] = rate[side] * (i < 2 ? sum->c[0] * normal[side][i] : sum->c[1]);
+        }
+    for (int i = 0; i < 3; i++) pushed[i] = spring[0][i] - spring[1][i];
+    taper_solve(whole, pushed, v);
+    double own = 0.0;
+    for (int side = 0; side < 2; side++) {
+        const double sign = side ? 1.0 : -1.0;
+        for (int i = 0; i < 3; i++) force[side][i] = damper[side][i] + sign * taper_dot(part[side][i], v);
+        own += sign * taper_dot(force[side], v) + rate[side] * rate[side] * s->line[side].c[0] +
+               sign * taper_dot(damper[side], v);
+    }
+    for (int i = 0; i < 3; i++) {
+        of->by_rates[i] = force[0][i];
+        for (int k = 0; k < 3; k++) of->by_rates[i] -= roller->share[k][i] * (force[0][k] - force[1][k]);
+    }
+    of->by_rates[3] = own;
 }
 
 /* S, stiffness and damping of a roller in balance that carries the inner ring. */
@@ -217,37 +272,7 @@ static void taper_slow_motion(const taper_given *of, const taper_state *s, ehd_t
             roller->stiffness[i][k] = 0.5 * (stiff[i][k] + stiff[k][i]);
             roller->damping[i][k] = 0.5 * (damp[i][k] + damp[k][i]);
         }
-}
-
-/* What rates of deviations do: the roller follows to first order, M V' = r_i times the sums of k n of the cone less those
- * of the cup times r_o, and forces of the dampers come to the ring by F_i - S' (F_i - F_o). */
-static void taper_by_rates(const taper_given *of, const taper_state *s, const ehd_taper_roller *roller) {
-    const ehd_taper_data *data = of->data;
-    const double rate[2] = {of->added[1], of->added[3]}, *normal[2] = {data->cone, data->cup};
-    double part[2][3][3], whole[3][3], spring[2][3], damper[2][3], force[2][3], pushed[3], v[3];
-    for (int side = 0; side < 2; side++)
-        for (int i = 0; i < 3; i++) {
-            const taper_sums *sum = &s->line[side];
-            spring[side][i] = rate[side] * (i < 2 ? sum->k[0] * normal[side][i] : sum->k[1]);
-            damper[side][i] = rate[side] * (i < 2 ? sum->c[0] * normal[side][i] : sum->c[1]);
-        }
-    taper_matrices(data, s, 0, part[0], part[1]);
-    taper_whole(of, part[0], part[1], whole);
-    for (int i = 0; i < 3; i++) pushed[i] = spring[0][i] - spring[1][i];
-    taper_solve(whole, pushed, v);
-    taper_matrices(data, s, 1, part[0], part[1]);
-    double own = 0.0;
-    for (int side = 0; side < 2; side++) {
-        const double sign = side ? 1.0 : -1.0;
-        for (int i = 0; i < 3; i++) force[side][i] = damper[side][i] + sign * taper_dot(part[side][i], v);
-        own += sign * taper_dot(force[side], v) + rate[side] * rate[side] * s->line[side].c[0] +
-               sign * taper_dot(damper[side], v);
-    }
-    for (int i = 0; i < 3; i++) {
-        of->by_rates[i] = force[0][i];
-        for (int k = 0; k < 3; k++) of->by_rates[i] -= roller->share[k][i] * (force[0][k] - force[1][k]);
-    }
-    of->by_rates[3] = own;
+    if (of->added) taper_by_rates(of, s, roller, whole, inner, outer);
 }
 
 /* Loads of a roller in balance, and how it follows the ring. */
@@ -288,7 +313,6 @@ static void taper_tell(const taper_given *of, taper_state *s, ehd_taper_roller *
     taper_line_dampers(&s->lines[0], cone);
     taper_line_dampers(&s->lines[1], cup);
     taper_slow_motion(of, s, roller);
-    if (of->added) taper_by_rates(of, s, roller);
 }
 
 /* Find the balance of a roller; whether it was found. It goes with the ring as it did at the last call, or starts with
@@ -299,8 +323,15 @@ static int taper_place(const taper_given *of, ehd_taper_roller *roller) {
     taper_state s;
     if (roller->made != 0.0) {
         memcpy(place, roller->place, sizeof place);
+        double moved[3];
+        for (int i = 0; i < 3; i++) moved[i] = of->d[i] - roller->ring[i];
+        for (int i = 0; of->added && i < 2; i++) { /* as raceways do that come closer by it */
+            const double more = (of->added[2] - roller->added[1]) * of->data->cup[i];
+            moved[i] += (of->added[0] - roller->added[0]) * of->data->cone[i] + more;
+            place[i] -= more;
+        }
         for (int i = 0; i < 3; i++)
-            for (int k = 0; k < 3; k++) place[i] += roller->share[i][k] * (of->d[k] - roller->ring[k]);
+            for (int k = 0; k < 3; k++) place[i] += roller->share[i][k] * moved[k];
         taper_state_at(of, place, &s);
         error = taper_left(&s, of->arm) / (s.size + TAPER_NOTHING);
     }
@@ -310,6 +341,7 @@ static int taper_place(const taper_given *of, ehd_taper_roller *roller) {
             taper_state_at(of, place, &s);
     }
     const int found = taper_newton(of, &s) && s.size <= DBL_MAX;
+    if (found && s.line[0].q > 0.0 && s.line[1].q > 0.0) taper_last_step(of, &s);
     taper_tell(of, &s, roller);
     return found;
 }
