@@ -400,11 +400,10 @@ class BearingElement(RingElement):
         """Tables of its deviations; None without any."""
         if self.deviations is None:
             return None
-        from mbs.bearings.deviating.tables import Turns, deviation_data  # with what few scenes state
+        from mbs.bearings.deviating.tables import deviation_data  # with what few scenes state
 
-        geometry, places = self.bearing.geometry, self.bearing.roller_angles
-        turns = Turns.of(geometry, self.inner_spin, self.outer_spin)
-        return deviation_data(self.deviations, geometry, turns, self.start_angle, places, np.arange(places.size))
+        bearing, spins = self.bearing, (self.inner_spin, self.outer_spin)
+        return deviation_data(self.deviations, bearing.geometry, spins, self.start_angle, bearing.roller_angles)
 
     @property
     def lubricant(self) -> Lubricant | None:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import json
 import math
 import os
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.outputs import Output, output_problems, write_figure
@@ -28,6 +29,7 @@ _BALLS = re.compile(r"\s*[67]\d{3}(?!\d)")
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Compute all points, describe and write them; status 1 where one is outside of what the laws hold for."""
+    arguments = _without_deviations(arguments)
     history = [text for given in arguments.load for text in given if text.strip().lower().endswith(HISTORY)]
     if history:
         from mbs.commands.one_bearing.history import run_history
@@ -70,6 +72,33 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     every = [point for answer in answers for row in answer.points for point in row]
     return "\n".join(lines), 1 if any(point.problems for point in every) else 0
 
+
+def _without_deviations(arguments: argparse.Namespace) -> argparse.Namespace:
+    """Arguments with the deviations from the form that stand in the braces of the bearing apart."""
+    text = arguments.bearing
+    if not (text.lstrip().startswith("{") and any(key in text for key in DEVIATIONS)):
+        return arguments
+    from ehdmaps.jobs.table import inline
+
+    problems: list[str] = []
+    values = inline(text, "BEARING", problems)
+    if problems:
+        raise InputError(problems)
+    own = {key: values.pop(key) for key in DEVIATIONS if key in values}
+    # a designation alone may be that of any kind
+    rest = values["name"] if set(values) == {"name"} and isinstance(values["name"], str) else _braced(values)
+    return argparse.Namespace(**{**vars(arguments), "bearing": rest, "deviations": own})
+
+
+def _braced(value: Any) -> str:
+    """A value as TOML writes it in a line."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{json.dumps(key)} = {_braced(one)}" for key, one in value.items()) + "}"
+    return f"[{', '.join(map(_braced, value))}]" if isinstance(value, list) else json.dumps(value, default=str)
+
+
+DEVIATIONS = ("waviness", "size_difference", "spall")
+"""Keys in the braces of a bearing that are those of [[bearings]] of scenes."""
 
 HISTORY = ".csv"
 """Ending of a history of operating points, in place of a load."""

@@ -274,7 +274,7 @@ class _Bearing:
         """Add n waves of an element."""
         angle = self._data.start + self._places[j]
         for q in range(-self._most, self._most + 1):
-            order, way = q * self._cage + n * self._own, 1 if n else (1 if q > 0 else -1)
+            order, way = q * self._cage + n * self._own, round(math.copysign(1.0, self._own if n else q))
             own = f"{n} BSF " if n else ""
             name = f"{own}{way * q:+d} FTF" if n else f"{abs(q)} FTF"
             self._add(source, name if q else own.strip(), order, by_order[q + self._most] * np.exp(1j * q * angle))

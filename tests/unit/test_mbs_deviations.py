@@ -13,7 +13,7 @@ from mbs import assemble, parse_scene
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.deviating.tables import Deviations, Spall, Turns, Wave, deviation_data, spectrum
+from mbs.bearings.deviating.tables import Deviations, Spall, Wave, deviation_data, spectrum
 from mbs.bearings.laws import hertz
 from mbs.linearised.excitation import excited
 from mbs.model.elements import Operation
@@ -45,7 +45,7 @@ def data(*waves, spalls=(), sizes=(), outer=0.0):
     """Tables of a bearing whose inner ring turns once with the system."""
     places = 2.0 * math.pi * np.arange(Z) / Z
     given = Deviations(waves, spalls, sizes)
-    return deviation_data(given, EVEN, Turns.of(EVEN, 1.0, outer), 0.3, places, np.arange(Z)), places
+    return deviation_data(given, EVEN, (1.0, outer), 0.3, places), places
 
 
 def test_tables_are_the_waves_at_any_angle():

@@ -12,12 +12,13 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, Problems
+from ehdmaps.exports.c.deviations import deviation_texts
 from ehdmaps.exports.c.text import array, comment, define, number, renamed, template
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.kernels import locked_film
@@ -212,7 +213,9 @@ class KernelOptions:
         problems.check()
 
 
-def kernel_files(emap: EHDMap, options: KernelOptions, header: Sequence[str]) -> dict[str, str]:
+def kernel_files(
+    emap: EHDMap, options: KernelOptions, header: Sequence[str], deviations: Any | None = None
+) -> dict[str, str]:
     """Names and texts of the files of an export.
 
     Parameters
@@ -223,6 +226,8 @@ def kernel_files(emap: EHDMap, options: KernelOptions, header: Sequence[str]) ->
         What is exported of it.
     header : sequence of str
         Lines that say where it comes from, put first.
+    deviations : record or None
+        Deviations of the bearing from its form, see `ehdmaps.exports.c.deviations`.
 
     Raises
     ------
@@ -243,13 +248,14 @@ def kernel_files(emap: EHDMap, options: KernelOptions, header: Sequence[str]) ->
         parts = [f"cylinder/{part}" for part in ("cylinder_law", "cylinder", "cylinder_films")]
         heads, bodies = heads + parts, [*bodies, "law/law_block", *parts]
         facades += ["bearing_facade"]
-    guard = "EHD_H"
+    guard, (own_head, own_body) = "EHD_H", deviation_texts(deviations)
     top = [
         banner, f"#ifndef {guard}\n#define {guard}\n\n#include <stddef.h>\n#include <stdint.h>\n",
         _public_numbers(law, bearing, options),
         '#ifdef __cplusplus\nextern "C" {\n#endif\n',
         *(template("ehdmaps.kernel", f"c/{part}.h") for part in heads),
         *(_template(f"{part}.h") for part in facades),
+        own_head,
         f"#ifdef __cplusplus\n}}\n#endif\n\n#endif /* {guard} */\n",
     ]  # fmt: skip
     source = [
@@ -261,6 +267,7 @@ def kernel_files(emap: EHDMap, options: KernelOptions, header: Sequence[str]) ->
         _film_data(law),
         "" if bearing is None else _bearing_data(bearing),
         *(_template(f"{part}.c") for part in facades),
+        own_body,
     ]  # fmt: skip
     texts = {"ehd.h": "\n".join(top), "ehd.c": "\n".join(source)}
     if bearing is not None:

@@ -13,10 +13,24 @@ static double entrainment_of(const double *values) {
     return EHD_ENTRAINMENT * (values[INNER_SPEED] - values[OUTER_SPEED]);
 }
 
+/* Deviations from the form at a part of the way from some values to others. */
+static void deviate(component *of, const double *from, const double *to, double part) {
+#if EHD_DEVIATES
+    const double inner = from[INNER_ANGLE] + part * (to[INNER_ANGLE] - from[INNER_ANGLE]);
+    const double outer = from[OUTER_ANGLE] + part * (to[OUTER_ANGLE] - from[OUTER_ANGLE]);
+    const double cage = EHD_CAGE_INNER * inner + EHD_CAGE_OUTER * outer;
+    ehd_bearing_deviations(cage, inner, outer, to[INNER_SPEED], to[OUTER_SPEED], of->added);
+    of->bearing.added = of->added;
+#else
+    (void)of, (void)from, (void)to, (void)part;
+#endif
+}
+
 /* Make the bearing and the law that some values ask for; films that have not begun settle there. */
 static int law_for(component *of, const double *values) {
     if (of->bearing.slices == 0 || of->bearing.clearance != values[CLEARANCE])
         if (ehd_bearing_make(&of->bearing, values[CLEARANCE], EHD_SLICES, NULL)) return EHD_BAD_ARGUMENT;
+    deviate(of, values, values, 1.0);
 #if FMU_MEMORY
     double pose[6], velocity[6];
     motion_of(values, pose, velocity);
@@ -77,6 +91,7 @@ int component_step(component *of, double step) {
     for (int n = 1; n <= count && !EHD_REFUSES(status); n++) {
         const double part = (double)n / count;
         motion_between(&of->now, part, step, pose);
+        deviate(of, of->now.former, of->now.values, part);
         status |= ehd_bearing_advance(&of->bearing, &of->film, step / count, of->now.last_step, pose,
                                       begin + part * turn, of->now.films, of->stepped, &of->result);
         memcpy(of->now.films, of->stepped, sizeof of->stepped);

@@ -48,6 +48,7 @@ typedef struct component {
     int stale;  /* whether outputs are older than inputs and states */
     int status; /* of the last call of the law, see ehd.h */
     ehd_bearing bearing;
+    double added[4 * EHD_DEVIATES + 1]; /* by deviations from the form, for it */
     ehd_bearing_force result;
 #if FMU_MEMORY
     ehd_film film;

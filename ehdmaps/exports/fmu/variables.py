@@ -84,6 +84,12 @@ MOTION = (
 )
 """Axes, signs and what is left out, for people."""
 
+DEVIATING = (
+    "Waves, spalls and sizes of rolling elements add to the approaches of the contacts, by the spins and speeds of the "
+    "rings and with elements that roll without slip."
+)
+"""What units of bearings with deviations from the form say."""
+
 SLOW = "Films follow the motion at once: there are no states."
 """What units without memory say."""
 

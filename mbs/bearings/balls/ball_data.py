@@ -19,7 +19,8 @@ the contacts on their tables; speed around the axis [rad/s], centrifugal load, t
 raceway [N]."""
 
 START = 10
-"""Numbers by which a ball begins: `ehd_ball_start`, its centre, that of the inner groove there, S (4), and deviations (2)."""
+"""Numbers by which a ball begins: `ehd_ball_start`, its centre, that of the inner groove there, S (4), and what
+deviations added to both contacts (2)."""
 
 
 class BallShape(NamedTuple):

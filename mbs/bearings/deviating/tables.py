@@ -16,7 +16,7 @@ from typing import Any, ClassVar, Literal, NamedTuple, Protocol
 
 import numpy as np
 
-from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.arrays import FloatArray
 from ehdmaps.kernel.library import checked, function
 from ehdmaps.kernel.record import Record, integers, numbers
 from mbs.passes import Rolling, passes_of
@@ -120,7 +120,7 @@ class Turns(NamedTuple):
     cage, inner, outer : float
         Those of cage and rings.
     element : float
-        That of a rolling element about its axis, against the cage.
+        That of a rolling element about its axis, against the cage; positive where the inner ring drives.
     """
 
     cage: float
@@ -147,7 +147,7 @@ class Turns(NamedTuple):
         (0.394, 2.251)
         """
         cage = 0.5 * (inner * (1.0 - geometry.gamma) + outer * (1.0 + geometry.gamma))
-        return cls(cage, inner, outer, passes_of(geometry, 1, inner, outer).element)
+        return cls(cage, inner, outer, passes_of(geometry, 1, 1.0).element * (inner - outer))
 
 
 class DeviationData(Record):
@@ -211,7 +211,7 @@ def _at() -> Callable[..., Any]:
 
 
 def deviation_data(
-    deviations: Deviations, geometry: Pitched, turns: Turns, start: float, places: FloatArray, elements: IntArray
+    deviations: Deviations, geometry: Pitched, spins: tuple[float, float], start: float, places: FloatArray
 ) -> DeviationData:
     """Make the tables of a bearing.
 
@@ -221,15 +221,16 @@ def deviation_data(
         What deviates.
     geometry : Pitched
         Geometry of the bearing.
-    turns : Turns
-        Turns of its parts by that of the system.
+    spins : (float, float)
+        Turns of its rings by that of the system.
     start : float
         Angle of the cage where that of the system is zero [rad].
     places : array (Z,)
         Angles of the elements in the cage [rad].
-    elements : array (Z,), of int
-        Number of each, from 0: a ball with four contacts stands there twice.
     """
+    elements = np.arange(places.size)
+    if any(getattr(geometry, "others", ())):  # balls with four contacts stand there twice
+        elements %= places.size // 2
     diameter = geometry.gamma * geometry.pitch_diameter / geometry.lean
     rings = (
         0.5 * geometry.pitch_diameter * (1.0 - geometry.gamma),
@@ -266,7 +267,7 @@ def deviation_data(
         rings=len(rows[0]),
         owned=len(rows[1]),
         start=start,
-        turns=np.array(turns),
+        turns=np.array(Turns.of(geometry, *spins)),
         tables=tables,
         places=places * (nodes / (2.0 * math.pi)),
         sizes=0.5 * sizes[elements],

@@ -187,14 +187,10 @@ class LocatingElement(OnRings):
         """Tables of its deviations; None without any."""
         if self.deviations is None:
             return None
-        from mbs.bearings.deviating.tables import Turns, deviation_data  # with what few scenes state
+        from mbs.bearings.deviating.tables import deviation_data  # with what few scenes state
 
-        geometry, places = self.force.geometry, self.force.angles
-        turns = Turns.of(geometry, self.inner_spin, self.outer_spin)
-        each = np.arange(places.size)
-        if any(getattr(geometry, "others", ())):  # balls with four contacts stand there twice
-            each %= geometry.balls
-        return deviation_data(self.deviations, geometry, turns, self.start_angle, places, each)
+        spins = self.inner_spin, self.outer_spin
+        return deviation_data(self.deviations, self.force.geometry, spins, self.start_angle, self.force.angles)
 
     @property
     def entrainment_rate(self) -> float:

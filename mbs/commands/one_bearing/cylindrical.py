@@ -389,11 +389,11 @@ def _beside(request: Request, points: Points) -> list[str]:
 CYLINDERS = Family(
     kind=CYLINDRICAL,
     words="cylindrical roller bearing",
-    taken=("law", "map", "physics", "structural-law", "supply", "roughness", "temperature", "clearance"),
+    taken=("law", "map", "physics", "structural-law", "supply", "roughness", "temperature", "clearance", "films"),
     own=("ring-temperatures", "profile", "slices", "coupled"),
     film_laws=(*laws.FORMULAS, TABLE_LAW, "map"),
     beside_laws=f"; {TABLE_FORM}",
-    memory=(),
+    memory=(".fmu",),
     spec=BearingSpec,
     read=_read,
     wrong=_too_many,

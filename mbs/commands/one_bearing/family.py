@@ -20,6 +20,7 @@ from mbs.scene.contact_laws import Damper
 
 if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
+    from mbs.bearings.deviating.tables import Deviations
     from mbs.bearings.locating.normal_law import PairLaw
     from mbs.commands.one_bearing.linear_files import Oscillating
     from mbs.exports.one_bearing.kind import ExportKind
@@ -138,6 +139,8 @@ class Request:
         The same in words.
     trial : bool
         Whether it is a changed one, for a band: its films are not told of.
+    deviations : Deviations or None
+        Deviations of the bearing from its form, for what is written of it and runs in time.
     """
 
     family: Family
@@ -153,6 +156,7 @@ class Request:
     operating: Operating
     description: Description
     trial: bool = False
+    deviations: Deviations | None = None
 
     @property
     def films(self) -> str:
@@ -204,7 +208,7 @@ class Family:
     films : callable
         (request) -> law with the films of an entrainment speed [m/s]; None without any.
     exported : callable or None
-        () -> what its sources and units have of their own; None without files for other programs.
+        () -> what its sources and units have of their own; None of those that are made of maps.
     oscillating : callable or None
         (points) -> K and C of films with memory.
     own_law : callable

@@ -6,13 +6,17 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from ehdmaps.errors import InputError
 from ehdmaps.outputs import Output
 from ehdmaps.units import TEMPERATURE
 from mbs.commands.one_bearing.linear_files import around, ending_of, header_of, is_linear, linear_outputs, write_linear
 from mbs.output.one_bearing.kind import Description
 from mbs.output.one_bearing.table import heading
+from mbs.scene.map_set import TABLE_LAW
 
 if TYPE_CHECKING:
+    from ehdmaps.maps.emap import EHDMap
+    from mbs.bearings.deviating.tables import Deviations
     from mbs.bearings.locating.normal_law import PairLaw
     from mbs.commands.one_bearing.family import Family
     from mbs.exports.one_bearing.speed_laws import SpeedLaws
@@ -44,6 +48,10 @@ class Export:
         Law with the films of an entrainment speed [m/s]; None where the law is dry.
     memory : bool
         Whether films have a memory.
+    emap : EHDMap or None
+        Map of the films of bearings that have one.
+    deviations : Deviations or None
+        Deviations of the bearing from its form.
     """
 
     family: Family
@@ -53,6 +61,8 @@ class Export:
     outer_speed: float
     films: Callable[[float], PairLaw] | None
     memory: bool = False
+    emap: EHDMap | None = None
+    deviations: Deviations | None = None
 
 
 def is_export(path: str | None) -> bool:
@@ -66,19 +76,15 @@ def is_export(path: str | None) -> bool:
     return is_linear(path) or ending_of(path) in (SOURCE, UNIT)
 
 
-def bearing_outputs(path: str | None, *, itself: bool) -> tuple[Output, ...]:
+def bearing_outputs(path: str | None) -> tuple[Output, ...]:
     """All files that -o asks for.
 
     Parameters
     ----------
     path : str or None
         Path of -o.
-    itself : bool
-        Whether the bearing itself is written, as C or as a unit.
     """
     ending = ending_of(path)
-    if not itself:
-        return linear_outputs(path)
     if path is not None and ending == SOURCE:
         from mbs.exports.one_bearing import source
 
@@ -105,12 +111,25 @@ def write_export(path: str, given: Export) -> str:
     SolverError, InputError
         If a speed between those that were asked for has no films; if it cannot be written.
     """
-    family, points = given.family, given.points
+    family, points, deviations = given.family, given.points, None
+    if given.deviations is not None:
+        from mbs.bearings.deviating.tables import deviation_data
+
+        bearing = given.force.bearing if family.exported is None else given.force
+        places = bearing.roller_angles if family.exported is None else bearing.angles
+        deviations = deviation_data(given.deviations, bearing.geometry, (1.0, 0.0), 0.0, places)
     heads = heading(family.kind, given.description, points[0])
     if is_linear(path):
         oscillating = family.oscillating(points) if given.memory and family.oscillating else None
         return write_linear(path, points[0].geometry.name, heads, points, given.outer_speed, oscillating)
-    assert family.exported is not None  # `is_export` was asked of such families alone
+    if family.exported is None:
+        from mbs.exports.one_bearing.of_map import write_of_map
+
+        if given.emap is None:
+            raise InputError(
+                f"-o {path}: got the law {given.description.law}; allowed: --law {TABLE_LAW}, or --map MAP.nc"
+            )
+        return write_of_map(path, given.emap, given.force.bearing, memory=given.memory, deviations=deviations)
     kind, ends, words = family.exported(), _turning_speeds(given), DRY
     films = None if ends is None else given.films
     laws = kind.speed_laws(given.force, films, ends or (0.0, 0.0), memory=given.memory)
@@ -121,11 +140,11 @@ def write_export(path: str, given: Export) -> str:
     if ending_of(path) == SOURCE:
         from mbs.exports.one_bearing.source import write_source
 
-        return write_source(kind, path, given.force, laws, header)
+        return write_source(kind, path, given.force, laws, header, deviations)
     from mbs.exports.one_bearing.unit import write_bearing_unit
 
     header = (*header, *around(points), "start: the first of the speeds")
-    return write_bearing_unit(kind, path, given.force, laws, _start_of(points[0]), header)
+    return write_bearing_unit(kind, path, given.force, laws, _start_of(points[0]), header, deviations)
 
 
 def _turning_speeds(given: Export) -> tuple[float, float] | None:

@@ -7,7 +7,7 @@ import dataclasses
 import math
 from collections.abc import Iterator, Mapping
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ehdmaps.errors import AnalysisError, InputError, SolverError
 from ehdmaps.outputs import FIGURE, Output, output_problems
@@ -19,7 +19,7 @@ from ehdmaps.units import TEMPERATURE, Tolerance
 from mbs.analyses.bearing_point import points_over, without_holes
 from mbs.bearings.laws import FORMULAS
 from mbs.commands.one_bearing.bands import NAME, point_bands, scene_of, turned
-from mbs.commands.one_bearing.family import AtSpeed, Family, Request
+from mbs.commands.one_bearing.family import Asked, AtSpeed, Family, Request
 from mbs.commands.one_bearing.files import SOURCE, UNIT, Export, bearing_outputs, is_export, write_export
 from mbs.commands.one_bearing.linear_files import count_problems, ending_of
 from mbs.commands.one_bearing.shared import (
@@ -44,6 +44,9 @@ from mbs.unknowns.held_open import held_open, hypotheses, other_supplies
 from mbs.unknowns.looks import Band
 from mbs.unknowns.statement import Statement
 from mbs.unknowns.unknown import Unknown
+
+if TYPE_CHECKING:
+    from mbs.bearings.deviating.tables import Deviations
 
 
 def read_request(arguments: argparse.Namespace, family: Family) -> Request:
@@ -85,7 +88,8 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
     heat, said = read_heat(chosen, oil, lack, problems), "physics" in chosen
     if "supply" in chosen and dry and family.kind.axial:  # of others it is in the films of formulas, too
         problems.append(f"--supply: got {chosen['supply'].label} {lack}")
-    problems += _output_problems(arguments, family, chosen, law)
+    problems += _output_problems(arguments, chosen, law)
+    deviations = _stated_deviations(arguments, asked, problems)
     problems += count_problems(
         arguments.output,
         len(operating.loads),
@@ -119,6 +123,7 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
             oil=oil,
             conditions=FilmConditions(heat, supply, surface),
             operating=operating,
+            deviations=deviations,
             description=Description(
                 law="",
                 films="",
@@ -156,18 +161,26 @@ def _electric() -> tuple[Number, ...]:
     return ELECTRIC
 
 
-def _output_problems(
-    arguments: argparse.Namespace, family: Family, chosen: Mapping[str, Any], law: str
-) -> Iterator[str]:
-    """Problems with the files that are to be written; of rollers as C they name the command that writes them."""
-    exports = family.exported is not None
-    outputs = bearing_outputs(arguments.output, itself=exports)
+def _output_problems(arguments: argparse.Namespace, chosen: Mapping[str, Any], law: str) -> Iterator[str]:
+    """Problems with the files that are to be written."""
     read = (arguments.bearing, chosen.get("map"), table_path(law))
-    ending = ending_of(arguments.output)
-    beside = f"; a bearing of rollers as {ending}: `ehdmaps export BEARING --to {ending[1:]}`"
-    named = not exports and ending in (SOURCE, UNIT)
-    for problem in output_problems((*outputs, Output("--plot", arguments.plot, FIGURE)), [one for one in read if one]):
-        yield problem + beside * (named and problem.startswith("-o: "))
+    outputs = (*bearing_outputs(arguments.output), Output("--plot", arguments.plot, FIGURE))
+    yield from output_problems(outputs, [one for one in read if one])
+
+
+def _stated_deviations(arguments: argparse.Namespace, asked: Asked | None, problems: list[str]) -> Deviations | None:
+    """Deviations from the form that stand in the braces of the bearing; None without."""
+    if not (given := getattr(arguments, "deviations", None)) or asked is None:
+        return None
+    from ehdmaps.jobs.table import Table
+    from mbs.scene.locating.deviations import elements_of, stated_deviations  # with what few bearings have
+
+    if ending_of(arguments.output) not in (SOURCE, UNIT):
+        problems.append(
+            f"BEARING: got {', '.join(given)}, by which points are not changed; allowed: with -o NAME{SOURCE} or "
+            f"NAME{UNIT}, and in scenes"
+        )
+    return stated_deviations(Table(given, "BEARING", problems), elements_of(asked.geometry))
 
 
 def points_of(request: Request) -> list[list[Any]]:
@@ -304,6 +317,7 @@ def write_file(path: str, request: Request, points: Points, bands: dict[str, Ban
     row, outer_speed = without_holes(path, list(points[0])), request.operating.outer_speed
     films, memory = family.films(request), request.memory
     try:
-        return write_export(path, Export(family, request.force, description, row, outer_speed, films, memory))
+        own = memory, request.asked.emap, request.deviations
+        return write_export(path, Export(family, request.force, description, row, outer_speed, films, *own))
     except SolverError as error:
         raise AnalysisError(f"-o {path}: {error}") from error

@@ -10,8 +10,10 @@ from typing import Any
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
+from ehdmaps.exports.c.deviations import deviation_texts
 from ehdmaps.exports.c.text import comment, define, number, renamed, template
 from ehdmaps.outputs import Kind, has_mark, write_text
+from mbs.bearings.deviating.tables import DeviationData
 from mbs.bearings.locating.normal_law import NormalLaw
 from mbs.exports.one_bearing.kind import ExportKind
 from mbs.exports.one_bearing.speed_laws import SpeedLaws
@@ -47,7 +49,14 @@ def header_of(path: str | Path) -> Path:
     return Path(path).with_suffix(".h")
 
 
-def write_source(kind: ExportKind, path: str | Path, force: Any, laws: SpeedLaws, header: Sequence[str]) -> str:
+def write_source(
+    kind: ExportKind,
+    path: str | Path,
+    force: Any,
+    laws: SpeedLaws,
+    header: Sequence[str],
+    deviations: DeviationData | None = None,
+) -> str:
     """Write source and header, and return what was written in words.
 
     Parameters
@@ -62,6 +71,8 @@ def write_source(kind: ExportKind, path: str | Path, force: Any, laws: SpeedLaws
         Laws of the contacts.
     header : sequence of str
         Lines that say where it comes from.
+    deviations : DeviationData or None
+        Deviations of the bearing from its form.
 
     Raises
     ------
@@ -69,7 +80,7 @@ def write_source(kind: ExportKind, path: str | Path, force: Any, laws: SpeedLaws
         If a file may not be replaced or cannot be written.
     """
     prefix, beside = prefix_of(path, kind.element), header_of(path)
-    texts = source_texts(kind, force, laws, header, prefix, beside.name)
+    texts = source_texts(kind, force, laws, header, prefix, beside.name, deviations)
     write_text(beside, texts["h"], HEADER)
     write_text(path, texts["c"], SOURCE)
     return f"{path}, {beside}: written (C99, names begin with {prefix}_)"
@@ -82,6 +93,7 @@ def source_texts(
     header: Sequence[str],
     prefix: str = "ehd",
     include: str = "bearing.h",
+    deviations: DeviationData | None = None,
 ) -> dict[str, str]:
     """Texts of the header, `h`, and of the source, `c`.
 
@@ -99,6 +111,8 @@ def source_texts(
         What all public names begin with, in lower case.
     include : str
         Name of the header.
+    deviations : DeviationData or None
+        Deviations of the bearing from its form.
 
     Raises
     ------
@@ -113,12 +127,12 @@ def source_texts(
     kernel = ("numbers.h", "pair/pair_law.h", "pair/pair_law.c", *speeds, *memory, *kind.kernel)
     kernel = (*kernel, *kind.film_kernel) if laws.memory else kernel
     bodies = (f"{kind.files}_bearing", *([f"{kind.files}_films"] if laws.memory else []))
-    banner, guard = comment(header), "EHD_BEARING_H"
+    banner, guard, (own_head, own_body) = comment(header), "EHD_BEARING_H", deviation_texts(deviations)
     top = [
-        banner, f"#ifndef {guard}\n#define {guard}\n\n#include <stddef.h>\n",
+        banner, f"#ifndef {guard}\n#define {guard}\n\n#include <stddef.h>\n#include <stdint.h>\n",
         kind.public(force) + _public_law(laws),
         '#ifdef __cplusplus\nextern "C" {\n#endif\n',
-        _template("bearing_law.h"), *(_template(f"{name}.h") for name in bodies),
+        _template("bearing_law.h"), *(_template(f"{name}.h") for name in bodies), own_head,
         f"#ifdef __cplusplus\n}}\n#endif\n\n#endif /* {guard} */\n",
     ]  # fmt: skip
     source = [
@@ -126,7 +140,7 @@ def source_texts(
         *(_kernel(name) for name in kernel if name.endswith(".h")),
         kind.private(force) + "\n" + _private_law(laws),
         *(_kernel(name) for name in kernel if name.endswith(".c")),
-        _template("bearing_law.c"), *(_template(f"{name}.c") for name in bodies),
+        _template("bearing_law.c"), *(_template(f"{name}.c") for name in bodies), own_body,
     ]  # fmt: skip
     texts = {"h": "\n".join(top), "c": "\n".join(source)}
     return {name: renamed(text, prefix).replace("@HEADER@", include) for name, text in texts.items()}

@@ -10,7 +10,8 @@ from typing import Any
 
 from ehdmaps.exports.c.text import number, template
 from ehdmaps.exports.fmu.unit import Content, write_unit
-from ehdmaps.exports.fmu.variables import LAG, VARIABLES, Variable
+from ehdmaps.exports.fmu.variables import DEVIATING, LAG, VARIABLES, Variable
+from mbs.bearings.deviating.tables import DeviationData
 from mbs.exports.one_bearing.kind import ExportKind
 from mbs.exports.one_bearing.source import source_texts
 from mbs.exports.one_bearing.speed_laws import SpeedLaws
@@ -67,7 +68,13 @@ def variables_of(kind: ExportKind) -> tuple[Variable, ...]:
 
 
 def write_bearing_unit(
-    kind: ExportKind, path: str | Path, force: Any, laws: SpeedLaws, start: Mapping[str, float], header: Sequence[str]
+    kind: ExportKind,
+    path: str | Path,
+    force: Any,
+    laws: SpeedLaws,
+    start: Mapping[str, float],
+    header: Sequence[str],
+    deviations: DeviationData | None = None,
 ) -> str:
     """Write a unit of a bearing by its kernel in C, and return what was written in words.
 
@@ -85,6 +92,8 @@ def write_bearing_unit(
         Pose and speeds at the start, by the names of the variables; zero where they are left out.
     header : sequence of str
         Lines that say where it comes from.
+    deviations : DeviationData or None
+        Deviations of the bearing from its form.
 
     Raises
     ------
@@ -92,7 +101,7 @@ def write_bearing_unit(
         If a compiler fails, or the file may not be written.
     """
     place, geometry = Path(path), force.geometry
-    texts, variables = source_texts(kind, force, laws, header), variables_of(kind)
+    texts, variables = source_texts(kind, force, laws, header, deviations=deviations), variables_of(kind)
     start = {**start, kind.play_name: kind.play(geometry)}
     values = ", ".join(number(start.get(variable.name, 0.0)) for variable in variables)
     files = {name: template("mbs.exports.one_bearing", f"unit_files/{name}") for name in ("motion.c", "variables.h")}
@@ -104,7 +113,12 @@ def write_bearing_unit(
         films=(),
         sources={"bearing.h": texts["h"], "bearing.c": texts["c"], **files},
         defines=f"#define FMU_START {{{values}}} /* of all variables */\n",
-        sentences=(*kind.motion, f"{kind.memory}; {_MEMORY_STEPS}" if laws.memory else kind.slow, LAG),
+        sentences=(
+            *kind.motion,
+            *([DEVIATING] if deviations else []),
+            f"{kind.memory}; {_MEMORY_STEPS}" if laws.memory else kind.slow,
+            LAG,
+        ),
         exchanges=not laws.memory,
         beyond=BEYOND,
         header=tuple(header),

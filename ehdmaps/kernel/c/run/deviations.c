@@ -41,6 +41,8 @@ void ehd_deviations_by(const ehd_deviations *of, const double *angles, const dou
     }
 }
 
+#ifdef EHD_NUMBER /* runs in Python's library; exports have angles and speeds of each ring */
+
 const double *ehd_deviations_at(const ehd_deviations *of, double angle, double speed) {
     double angles[4], speeds[4];
     if (!of || of->elements == 0) return NULL;
@@ -61,3 +63,5 @@ static const double *deviations_of(const ehd_deviations *all, int64_t b, const e
 }
 
 EHD_SIZE_OF(ehd_deviations)
+
+#endif

@@ -17,6 +17,18 @@ static int bearing_for(component *of, const double *values) {
     return EHD_OK;
 }
 
+/* Deviations from the form at a part of the way from some values to others. */
+static void deviate(component *of, const double *from, const double *to, double part) {
+#if EHD_DEVIATES
+    const double inner = from[INNER_ANGLE] + part * (to[INNER_ANGLE] - from[INNER_ANGLE]);
+    const double outer = from[OUTER_ANGLE] + part * (to[OUTER_ANGLE] - from[OUTER_ANGLE]);
+    ehd_bearing_deviations(ehd_cage(inner, outer), inner, outer, to[INNER_SPEED], to[OUTER_SPEED], of->added);
+    of->bearing.added = of->added;
+#else
+    (void)of, (void)from, (void)to, (void)part;
+#endif
+}
+
 /* Force of some values. Bodies start from nothing, so that it hangs on these values alone; or on films that have begun,
  * which are springs after no time. */
 static int force_of(component *of, const double *values, ehd_bearing_force *result) {
@@ -24,6 +36,7 @@ static int force_of(component *of, const double *values, ehd_bearing_force *resu
     const double cage_angle = ehd_cage(values[INNER_ANGLE], values[OUTER_ANGLE]);
     motion_of(values, pose, velocity);
     if (bearing_for(of, values)) return EHD_BAD_ARGUMENT;
+    deviate(of, values, values, 1.0);
 #if EHD_MEMORY
     if (of->now.begun) {
         of->bodies = of->now.bodies;
@@ -67,6 +80,7 @@ int component_step(component *of, double step) {
         const double part = (double)n / count;
         double pose[6];
         motion_between(now, part, step, pose);
+        deviate(of, now->former, now->values, part);
         status |= ehd_films_step(&of->bearing, &of->law, &now->bodies, &now->films, step / count, pose,
                                  begin + part * turn, now->values[INNER_SPEED], now->values[OUTER_SPEED], &of->result);
     }

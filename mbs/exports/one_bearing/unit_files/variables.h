@@ -56,6 +56,7 @@ typedef struct component {
     int made;   /* whether the bearing is that of the parameters */
     double play, mirrored;
     ehd_bearing bearing;
+    double added[4 * EHD_DEVIATES + 1]; /* by deviations from the form, for it */
     ehd_law law;
     bodies bodies; /* of the last call */
     ehd_bearing_force result;
