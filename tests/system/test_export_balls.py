@@ -293,9 +293,15 @@ def test_two_files_of_a_source(tmp_path, monkeypatch, capsys):
 
 
 @pytest.mark.parametrize("ending", ["c", "fmu"])
-def test_rollers_are_exported_by_another_command(ending, capsys):
-    assert main(["bearing", "NU308", "--load", "1 kN", "--speed", "0 rpm", "-o", f"x.{ending}"]) == 2
-    assert f"a bearing of rollers as .{ending}: `ehdmaps export BEARING --to {ending}`" in capsys.readouterr().err
+def test_rollers_are_exported_with_films(ending, capsys):
+    asked = ["bearing", "NU308", "--load", "1 kN", "--speed", "0 rpm", "-o", f"x.{ending}"]
+    assert main([*asked, "--law", "hertz"]) == 2
+    assert (
+        f"-o x.{ending}: got the law dry Hertz, ISO 16281; allowed: --law table, or --map MAP.nc"
+        in capsys.readouterr().err
+    )
+    assert main([*asked, "--profile", '{ crown_drop = "10 um" }']) == 2
+    assert "allowed: without --coupled, and --profile iso or straight" in capsys.readouterr().err
     assert export(["export", "6208", "--to", ending]) == 2
     assert "the bearing itself: -o NAME.c, NAME.fmu" in capsys.readouterr().err
 

@@ -45,7 +45,7 @@ typedef struct ehd_roller {
 } ehd_roller;
 
 /* The rollers of a bearing. All zero before the first call: they start from nothing. Answers hang on where they started
- * by what Newton's method leaves, 1e-13 of the load. */
+ * by what Newton's method leaves, 1e-13 of the load, 1e-11 of stiffness and damping. */
 typedef struct ehd_rollers {
     ehd_roller roller[EHD_ROLLERS];
     double own[EHD_ROLLERS][51]; /* what the next call starts from */

@@ -23,7 +23,7 @@
 #define TAPER_CUTS 40
 /* Force out of balance over the sizes of its parts at which Newton's method ends: its last step is gone by the derivatives
  * alone, so that forces are exact to the square of it, stiffness and damping to itself. */
-#define TAPER_BALANCE 1e-9
+#define TAPER_BALANCE 1e-10
 #define TAPER_ROUND_OFF 1e-13 /* the same of a way */
 #define TAPER_ROUGH 1e-9
 #define TAPER_NOTHING 1e-10 /* load below which a contact counts as unloaded [N] */
