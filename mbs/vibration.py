@@ -13,14 +13,16 @@ ISO 15242-1:2015 and ISO 15242-2:2015, Rolling bearings - Measuring methods for 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
+from mbs.bearings.deviating.tables import named_orders
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.scene.assembly import assemble
@@ -95,12 +97,15 @@ class RingVibration:
         Samples a second of the signals [Hz].
     signals : array (cases, samples)
         Radial velocity of the outer ring [m/s].
+    orders : mapping of str to float
+        Orders of the bearing by their names, for each turn of the spindle.
     """
 
     cases: tuple[tuple[float | None, float, str], ...]
     bands: FloatArray
     rate: float
     signals: FloatArray
+    orders: Mapping[str, float]
 
     def band(self, law: str) -> FloatArray:
         """Least and largest velocity of each band over all cases of a law, shape (2, 3) [m/s].
@@ -182,7 +187,9 @@ def ring_vibration(
         found = run(model.system, course, BEGINNING + duration, settings, model.scene.sensors, start)
         signals.append(found.signals[found.time >= BEGINNING, 0])
     rate = 0.5 / STEP
-    return RingVibration(cases, np.array([band_levels(one, rate) for one in signals]), rate, np.array(signals))
+    data: Any = getattr(model.system.elements[0].element, "deviation_data", None)
+    orders = {} if data is None else named_orders(data)
+    return RingVibration(cases, np.array([band_levels(one, rate) for one in signals]), rate, np.array(signals), orders)
 
 
 def band_levels(signal: FloatArray, rate: float, bands: Sequence[tuple[float, float]] = BANDS) -> FloatArray:

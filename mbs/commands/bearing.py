@@ -30,6 +30,14 @@ _BALLS = re.compile(r"\s*[67]\d{3}(?!\d)")
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Compute all points, describe and write them; status 1 where one is outside of what the laws hold for."""
     arguments = _without_deviations(arguments)
+    if getattr(arguments, "vibration", None) is not None:
+        from mbs.commands.one_bearing.vibration import run_vibration
+
+        stated = getattr(arguments, "deviations", {})
+        keys = "\n".join(f"{key} = {_braced(value)}" for key, value in stated.items())
+        return run_vibration(arguments, keys, family_of(arguments.bearing, arguments.axial))
+    if not arguments.load:
+        raise InputError('--load: missing; allowed: on the inner ring, such as "5 kN", or a history, FILE.csv')
     history = [text for given in arguments.load for text in given if text.strip().lower().endswith(HISTORY)]
     if history:
         from mbs.commands.one_bearing.history import run_history

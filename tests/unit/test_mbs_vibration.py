@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from ehdmaps.errors import InputError
+from mbs.cli import main
 from mbs.vibration import BEGINNING, SPEED, band_levels, envelope_spectrum, ring_vibration
 
 SKF_6205 = """
@@ -59,3 +61,35 @@ def test_the_bands_are_told_by_case():
     assert np.all(low <= high) and low[0] > 10.0 * low[2]
     with pytest.raises(InputError, match="allowed: a duration > 0 s, an axial load"):
         ring_vibration("6205", wave, 0.0, 0.06)
+
+
+@pytest.mark.slow
+def test_the_command_has_bands_and_the_order_of_a_spall(tmp_path, capsys):
+    """The envelope has BPFO; the perfect bearing stands beside; the file has what is printed."""
+    spall = 'spall = [{ on = "outer", length = "0.5 mm", depth = "20 um" }]'
+    given = ["--axial", "150 N", "--vibration", "60 g", "--law", "hertz:1.25e-5 s", "--temperature", "40 degC"]
+    path = tmp_path / "v.nc"
+    assert main(["bearing", f'{{ name = "6205", {spall} }}', *given, "--clearance", "10 um", "-o", str(path)]) == 0
+    page = capsys.readouterr().out
+    with xr.open_dataset(path) as data:
+        assert data["velocity_band"].shape == (1, 3) and data["velocity"].attrs["units"] == "m/s"
+        high = float(data["velocity_band"][0, 2])
+    rows = [line.split() for line in page.splitlines() if " to " in line]
+    assert float(rows[-2][-1]) == pytest.approx(1e6 * high, rel=5e-3)
+    assert float(rows[-1][-1]) < 1e-4 * float(rows[-2][-1])
+    assert "1 BPFO, " in page
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (["NU308", "--axial", "1 N", "--vibration", "1 kg"], "allowed: bearings that carry axial load"),
+        (["6205", "--vibration", "1 kg"], "--axial: got None; allowed: the load along the axis"),
+        (["6205", "--vibration", "1 kg", "--speed", "3 rpm"], "--speed: has no part in --vibration"),
+        (["6205", "--vibration", "1 kg", "--films", "memory"], "--films: has no part in --vibration; allowed: --law"),
+        (["6205"], "--load: missing; allowed: on the inner ring"),
+    ],
+)
+def test_what_the_command_does_not_take(given, said, capsys):
+    assert main(["bearing", *given]) == 2
+    assert said in capsys.readouterr().err

@@ -11,7 +11,7 @@ import ehdmaps.jobs.cli
 import mbs.cli
 from ehdmaps.program import Program, complain
 
-MOST_OPTIONS = 223
+MOST_OPTIONS = 224
 """Options of both programs in all, a shared one once: what a user has to choose from."""
 
 
