@@ -15,8 +15,9 @@ from ehdmaps.physics.lubricant import DEFAULT_OIL
 from ehdmaps.units import TEMPERATURE, Display
 from mbs.commands.common import out_of_place
 from mbs.commands.one_bearing.family import Family
-from mbs.commands.one_bearing.shared import LOADS, OPTIONS, read_one
+from mbs.commands.one_bearing.shared import LOADS, read_one
 from mbs.output.files import RESULT, described, write_dataset
+from mbs.scene.choices import OPTIONS
 from mbs.scene.fields import FORCE, MICROMETRE
 from mbs.vibration import BANDS, SPEED, RingVibration, envelope_spectrum, ring_vibration
 
