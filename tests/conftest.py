@@ -54,8 +54,12 @@ def coarse_figures() -> Iterator[None]:
 
 @pytest.fixture(scope="session", autouse=True)
 def own_binaries() -> Iterator[None]:
-    """Compile units for this system alone: for all of them it takes ten seconds of processor time each."""
-    with mock.patch("ehdmaps.exports.fmu.binaries.zig", return_value=()):
+    """Compile units for this system alone, and without optimisation: for all of them it takes ten seconds of processor
+    time each, and with it four times as long."""
+    from ehdmaps.exports.fmu import binaries
+
+    quick = (*binaries._OPTIONS, "-O0")
+    with mock.patch.multiple(binaries, zig=lambda: (), _OPTIONS=quick):
         yield
 
 
