@@ -74,8 +74,8 @@ def test_points_that_failed_have_place_and_cause(output):
     place = r"\S+ m/s, \S+ degC"
     told = lines(output)
     assert told[1] == f"{task.points} points taken over from the store"
-    assert re.fullmatch(rf"failed: inner, \S+ N/mm, {place}: killed twice", told[2])
-    assert re.fullmatch(rf"diverged: inner, 2 loads from \S+ N/mm to \S+ N/mm, {place}: lost", told[3])
+    assert re.fullmatch(rf"failed: inner, \S+ N/mm, {place}, by hertz: killed twice", told[2])
+    assert re.fullmatch(rf"diverged: inner, 2 loads from \S+ N/mm to \S+ N/mm, {place}, by hertz: lost", told[3])
     assert len(told) == 5  # a note of a solver that is quick is none of the log
 
 
@@ -84,7 +84,7 @@ def test_what_a_point_notes_that_took_long(output):
     task, *_ = line_tasks(job, of_map(job))
 
     class Slow:
-        points, slow, where = task.points, True, task.where
+        points, slow, where, by = task.points, True, task.where, task.by
 
     with RunLog(output, [], 12, 1) as log:
         log.found(Slow, results(*[(Status.CONVERGED, "solved at the second try")] * task.points), now=True)
@@ -122,6 +122,8 @@ def test_a_run_that_was_killed_is_told_by_the_next_one(output):
 class Point(Stub):
     """A task with statuses."""
 
+    by = "nobody"
+
     def failed(self, reason):
         return results((Status.FAILED, reason))
 
@@ -133,7 +135,7 @@ def test_processes_that_died_are_told(output):
     assert lines(output)[1:4] == [
         "a worker process died (signal SIGKILL): the 3 points that were out are tried again one at a time",
         "a worker process died (signal SIGKILL) at Stub 7",
-        "failed: Stub 7: the worker process died twice (killed, or out of memory); the same command tries again",
+        "failed: Stub 7, by nobody: the worker process died twice (killed, or out of memory); the same command tries again",
     ]
 
 

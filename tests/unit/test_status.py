@@ -25,6 +25,7 @@ class Line:
 
     points: int = 4
     slow: bool = False
+    by: str = "openfoam"
 
 
 @pytest.fixture
@@ -52,11 +53,12 @@ def test_a_run_can_be_looked_at_and_leaves_nothing_behind(output, job, monkeypat
     with StatusFile(output, about(job), 12, workers=3) as written:
         assert seen(output)[0].done == 0
         written.found(Line(), arrays(*[Status.CONVERGED] * 3, Status.STAGNATED), now=False)
-        written.found(Line(), arrays(Status.FAILED, Status.STAGNATED, Status.ASYMPTOTE, Status.CONVERGED), now=True)
+        of_reference = arrays(Status.FAILED, Status.STAGNATED, Status.ASYMPTOTE, Status.CONVERGED)
+        written.found(Line(by="reynolds"), of_reference, now=True)
         found, running = seen(output)
     assert running
     assert (found.done, found.total, found.taken_over) == (8, 12, 4)
-    assert found.failed == {"stagnated": 2, "failed": 1}
+    assert found.failed == {"stagnated by openfoam": 1, "stagnated by reynolds": 1, "failed by reynolds": 1}
     assert (found.process, found.workers) == (os.getpid(), 3)
     assert "NU308, FVA3, solver hertz" in found.job
     assert look(output) is None

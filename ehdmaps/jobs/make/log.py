@@ -152,7 +152,7 @@ class RunLog:
         for (code, reason), index in _causes(arrays).items():
             status = Status(code)
             if not status.usable or (task.slow and reason):
-                self.told(f"{status.word}: {task.where(index)}: {reason or 'no cause given'}")
+                self.told(f"{status.word}: {task.where(index)}, by {task.by}: {reason or 'no cause given'}")
         if time.monotonic() - self._told >= PACE_SECONDS:
             self._told = time.monotonic()
             self.told(f"{self._pace.done} of {self._pace.total} points, {self._pace.text('point')}".rstrip(", "))

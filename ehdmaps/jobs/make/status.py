@@ -256,7 +256,7 @@ class RunStatus:
     total, done, taken_over : int
         Points: all, those that have a result, and those of them that an earlier run left.
     failed : dict
-        Points without a solution so far, by the word of their status.
+        Points without a solution so far, by the word of their status and the solver.
     rate : float or None
         Points a second; None as long as nobody can know.
     """
@@ -316,7 +316,7 @@ class StatusFile:
         }
         self._pace = Pace(total)
         self._taken_over = 0
-        self._failed: Counter[int] = Counter()
+        self._failed: Counter[str] = Counter()
         self._held: int | None = None
         self._allowed = not output_problems([Output("", self._path, STATUS)])
         self._last = -WRITE_SECONDS
@@ -349,8 +349,8 @@ class StatusFile:
         else:
             self._pace.taken_over(task.points)
             self._taken_over += task.points
-        values, counts = np.unique(arrays["status"], return_counts=True)
-        self._failed.update(dict(zip(values.tolist(), counts.tolist(), strict=True)))
+        found = map(Status, arrays["status"].tolist())
+        self._failed.update(f"{status.word} by {task.by}" for status in found if not status.usable)
         if time.monotonic() - self._last >= WRITE_SECONDS or (now and task.slow):
             self.write()
 
@@ -362,13 +362,12 @@ class StatusFile:
         self._last = time.monotonic()
         if not self._allowed:
             return
-        failed = {Status(value).word: count for value, count in self._failed.items() if not Status(value).usable}
         status = RunStatus(
             **self._about,  # type: ignore[arg-type]
             written=_now(),
             done=self._pace.done,
             taken_over=self._taken_over,
-            failed=failed,
+            failed=dict(self._failed),
             rate=self._pace.rate,
         )
         with contextlib.suppress(OSError):

@@ -46,6 +46,11 @@ class Task(Protocol):
         ...
 
     @property
+    def by(self) -> str:
+        """Name of who computes it: a run solves points besides those of the map."""
+        ...
+
+    @property
     def slow(self) -> bool:
         """True where its result is worth a trip to the disk of its own."""
         ...

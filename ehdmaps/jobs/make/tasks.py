@@ -129,6 +129,11 @@ class LineTask:
         return len(self.loads)
 
     @property
+    def by(self) -> str:
+        """Name of the solver."""
+        return self.solver.name
+
+    @property
     def slow(self) -> bool:
         """True where every point deserves to be brought to the disk at once."""
         return self.solver.slow
