@@ -19,6 +19,9 @@ ORDER_DIVISOR = 3.0
 ROWS_MATTER = {"film_offset": 5e-4, "loss_compliance": 5e-3}
 """Relative error of half the rows beside the asked ones, above which twice as many are solved too."""
 
+ROWS_SHARE = 0.5
+"""Of the time that is left, which the grid may take that tells what rows cost: the film itself needs the rest."""
+
 
 @dataclass(frozen=True)
 class Grids:
@@ -102,11 +105,14 @@ def with_rows(
         If no case can be made.
     """
     halved = replace(fine, columns=fine.columns // 2)
+    part = TimeLimit(ROWS_SHARE * limit.left)
     try:
-        rows = grids.solve(halved, name, False, limit, coarse.start)
+        rows = grids.solve(halved, name, False, part, coarse.start)
     except RunError:
+        limit.waited += part.waited
         note = f"not solved on {halved.columns} x {halved.rows} cells: the error of {fine.rows} rows is in the film"
         return Grids(coarse, grids.solve(fine, name, with_fields, limit, coarse.start), note=note)
+    limit.waited += part.waited
     solved = Grids(coarse, grids.solve(fine, name, with_fields, limit, rows.start), rows)
     if not _rows_matter(coarse, rows):
         return solved

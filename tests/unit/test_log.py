@@ -135,7 +135,8 @@ def test_processes_that_died_are_told(output):
     assert lines(output)[1:4] == [
         "a worker process died (signal SIGKILL): the 3 points that were out are tried again one at a time",
         "a worker process died (signal SIGKILL) at Stub 7",
-        "failed: Stub 7, by nobody: the worker process died twice (killed, or out of memory); the same command tries again",
+        "failed: Stub 7, by nobody: the worker process died twice (killed, or out of memory); "
+        "the same command tries again",
     ]
 
 
