@@ -40,7 +40,7 @@ void Foam::reportFilm(resultsFile& results, slice& s, newtonResult& solved)
     results.write("centralFilm", centralFilm(state));
     results.write("minimumFilm", min(state.h));
     results.write("maximumPressure", greatest);
-    results.write("filmOffset", solved.state.offset*s.filmScale() - s.solid().dry().offset);
+    results.write("filmOffset", solved.state.offset*s.filmScale() + s.upstreamOffset(state) - s.solid().dry().offset);
     results.write("outletDefect", mag(flux.last()/flux[0] - 1));
 
     const scalarField fraction(s.flow().columnFraction());

@@ -6,6 +6,7 @@
 
 #include "slice.H"
 #include "upstream.H"
+#include "mathematicalConstants.H"
 
 namespace
 {
@@ -45,14 +46,7 @@ Foam::slice::slice
     solid_(contact, x),
     x_(x),
     filmScale_(filmScale),
-    upstreamLoad_
-    (
-        upstreamFilm
-        (
-            flow.oil().viscosity(0)*contact.entrainment(), contact.radius, -x[0],
-            filmScale + sqr(x[0])/(2*contact.radius), filmScale
-        ).load
-    ),
+    upstreamLoad_(upstreamLoad(filmScale + sqr(x[0])/(2*contact.radius))),
     faceShift_(x.size(), Zero),
     shiftStep_(0),
     wallUnit_(flow.heat() ? flow.heat()->fluxUnit()/flow.heat()->bulk() : 0)
@@ -171,6 +165,20 @@ Foam::scalar Foam::slice::load(const unknowns& u) const
         sum += flow_.loadPressure(u.column[i])*(x_[i + 1] - x_[i]);
     }
     return sum;
+}
+
+
+Foam::scalar Foam::slice::upstreamLoad(const scalar film) const
+{
+    const scalar drag = flow_.oil().viscosity(0)*contact_.entrainment();
+    return upstreamFilm(drag, contact_.radius, -x_[0], film, filmScale_).load;
+}
+
+
+Foam::scalar Foam::slice::upstreamOffset(const filmState& state) const
+{
+    const scalar unit = 4/(constant::mathematical::pi*contact_.modulus);
+    return unit*upstreamLoad(state.h[0])*(Foam::log(-x_[0]/contact_.halfWidth) + 0.5);
 }
 
 
