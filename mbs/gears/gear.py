@@ -178,7 +178,7 @@ def gear_mesh(
         problems.append(
             f"{where}: the centres are {apart * 1e3:.7g} mm apart; allowed: {rule} = "
             f"{wanted * 1e3:.7g} mm; "
-            "move one of the shafts"
+            "move one of the shafts, and the seats of its bearings with it"
         )
     needed = -spin1 * pair.teeth[0] / pair.teeth[1]
     if not (math.isfinite(spin1) and abs(spin2 - needed) <= SPINS * abs(needed)):

@@ -434,7 +434,7 @@ def test_a_new_machine_is_the_shipped_one_and_names_its_own_file(what, tmp_path,
     assert f"mbs statics {what}.toml " in text
     assert read_scene(f"{what}.toml").bearings == read_scene(MACHINES[what]).bearings
     assert cli.main(["new", what, "--csv", f"{what}.toml", "-o", "other.toml"]) == 2
-    assert "--csv: allowed: of a shaft alone" in capsys.readouterr().err
+    assert "--csv: got it beside" in capsys.readouterr().err
 
 
 def test_a_name_that_no_text_holds_is_refused(tmp_path):

@@ -20,11 +20,11 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     problems, text = [], ""
     try:
         if arguments.what in MACHINES:
-            problems += (
-                []
-                if sections is None
-                else ["--csv: allowed: of a shaft alone; write its path as sections of a [[shafts]]"]
-            )
+            if sections is not None:
+                problems.append(
+                    f"--csv: got it beside {arguments.what}; allowed: `mbs new shaft --csv {sections}`, or, in a [[shafts]] "
+                    f'of the {arguments.what}, sections = "{sections}"'
+                )
             text = new_machine(arguments.what, target)
         else:
             text = new_shaft(target, sections)
