@@ -105,7 +105,9 @@ def table(heads: Sequence[Child], rows: Iterable[Sequence[Child]], caption: str,
     """
 
     def cell(name: str, index: int, child: Child, **more: str) -> Markup:
-        return tag(name, child, class_=None if index in texts else "number", **more)
+        # a number alone is not broken at its sign
+        kind = "number" if " " in str(child) else "number one"
+        return tag(name, child, class_=None if index in texts else kind, **more)
 
     body = [
         tag(

@@ -23,6 +23,9 @@ from mbs.scene.fields import FORCE
 
 _BAND = "90 % of what is not known"
 
+MOST_ASKED = 0.27
+"""Largest margin above operation that API 617 asks for."""
+
 SHARP = 2.5
 """Amplification factor, 1/(2 zeta), below which API 617 asks for no margin."""
 
@@ -68,6 +71,10 @@ def critical_table(found: CriticalResult, names: Sequence[str], banded: bool = F
     end = float(np.abs(found.sweep.speeds).max())
     span = f"{_rpm(low)} to {_rpm(high)}" if high > low else _rpm(high)
     looked = f"Speeds up to {_rpm(end)} were looked at; operation is {span}."
+    if end < (1.0 + MOST_ASKED) * high * (1.0 - CLOSE):
+        looked += (
+            f" What lies in the margin above, up to {_rpm((1.0 + MOST_ASKED) * high)}, was not: let [sweep] reach it."
+        )
     if not found.found:
         return tag("p", f"There is no critical speed. {looked}")
     rows, near = [], list[str]()

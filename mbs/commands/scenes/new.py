@@ -22,8 +22,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         if arguments.what in MACHINES:
             if sections is not None:
                 problems.append(
-                    f"--csv: got it beside {arguments.what}; allowed: `mbs new shaft --csv {sections}`, or, in a [[shafts]] "
-                    f'of the {arguments.what}, sections = "{sections}"'
+                    f"--csv: got it beside {arguments.what}; allowed: `mbs new shaft --csv {sections}`, or, in a "
+                    f'[[shafts]] of the {arguments.what}, sections = "{sections}"'
                 )
             text = new_machine(arguments.what, target)
         else:

@@ -68,13 +68,19 @@ function attribute(index, values, kind) {
   gl.enableVertexAttribArray(index);
   gl.vertexAttribPointer(index, 3, gl.FLOAT, false, 0, 0);
 }
-function turned() {
-  // Rows: right, up, away from the viewer; places about the middle, the same scale along both sides of the canvas.
+function axes() {
+  // Rows: right, up, away from the viewer.
   const a = view.azimuth * Math.PI / 180, e = view.elevation * Math.PI / 180;
-  const rows = [[-Math.sin(a), Math.cos(a), 0], [-Math.sin(e) * Math.cos(a), -Math.sin(e) * Math.sin(a), Math.cos(e)],
+  return [[-Math.sin(a), Math.cos(a), 0], [-Math.sin(e) * Math.cos(a), -Math.sin(e) * Math.sin(a), Math.cos(e)],
     [-Math.cos(e) * Math.cos(a), -Math.cos(e) * Math.sin(a), -Math.sin(e)]];
-  const least = Math.min(canvas.width, canvas.height), unit = 1.25 * view.zoom / reach;
-  const factors = [unit * least / canvas.width, unit * least / canvas.height, 0.3 / (reach * Math.max(1, view.zoom))];
+}
+// How far the machine reaches to the right and up, as it is seen first: there it fits, with room to move.
+const [wide, tall] = axes().map(row => row.reduce((sum, value, axis) =>
+  sum + 0.5 * Math.abs(value) * (high[axis] - low[axis]), 0) + 0.1 * reach);
+function turned() {
+  // Places about the middle, the same scale along both sides of the canvas.
+  const rows = axes(), unit = view.zoom * Math.min(canvas.width / wide, canvas.height / tall);
+  const factors = [unit / canvas.width, unit / canvas.height, 0.3 / (reach * Math.max(1, view.zoom))];
   const moved = [view.x, view.y, 0];
   return rows.map((row, k) => [...row.map(value => factors[k] * value),
     moved[k] - factors[k] * row.reduce((sum, value, axis) => sum + value * middle[axis], 0)]);
