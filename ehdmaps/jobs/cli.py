@@ -92,7 +92,7 @@ def _command(arguments: argparse.Namespace) -> tuple[str, int]:
 
             return solve_balls(arguments)
     if arguments.command in ("generate", "show", "plot", "export"):
-        from ehdmaps.jobs.make.points.asked import points_source
+        from ehdmaps.jobs.make.points_asked import points_source
 
         if source := points_source(arguments):
             from ehdmaps.jobs.commands.points import run as run_points

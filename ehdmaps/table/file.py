@@ -125,7 +125,7 @@ def read_tables(path: Path) -> TableFile:
         with opened(path) as file:
             attributes = {name: str(file.getncattr(name)) for name in file.ncattrs()}
             if (attributes.get(MADE_AS), attributes.get("table_format")) != (KIND, FORMAT):
-                raise MapError(f"{path}: is no film table of this version; make one by `ehdmaps table make`")
+                raise MapError(f"{path}: is no film table of this version; take the one that comes with ehdmaps")
             tables = {}
             for law, group in file.groups.items():
                 parts = {part: _read_nodes(group.groups[part], path) for part in _MEANING}

@@ -1,6 +1,6 @@
 """One part of a table: what is known at its nodes, how it is read between them, and how wrong that is.
 
-The errors are measured ones, a number for each cell between the nodes, see `ehdmaps.jobs.make.table_make.measured`.
+The errors are measured ones, a number for each cell between the nodes, see `examples.tables.lines.measured`.
 """
 
 from __future__ import annotations

@@ -22,10 +22,6 @@ import time
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.jobs.make.points.errors import SEED as SET
-from ehdmaps.jobs.make.points.errors import finer_points, random_points, read_errors
-from ehdmaps.jobs.make.points.lines import RESOLUTION, THIN_RESOLUTION
-from ehdmaps.jobs.make.points.table import SOLVED
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
@@ -35,6 +31,10 @@ from ehdmaps.table.file import shipped_tables
 from ehdmaps.table.points.coordinates import point_zeta
 from ehdmaps.table.points.file import shipped_point_table
 from ehdmaps.table.points.nodes import ERRORS, FILMS, SLOPE
+from examples.tables.point_errors import SEED as SET
+from examples.tables.point_errors import finer_points, random_points, read_errors
+from examples.tables.point_lines import RESOLUTION, THIN_RESOLUTION
+from examples.tables.points import SOLVED
 
 SEED, KNEE, HEAVIER, UNRESOLVED = 7, 1.0, 1.0, 0.15
 NAMES = (*(field.name for field in FILMS), SLOPE)

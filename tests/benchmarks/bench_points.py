@@ -6,7 +6,7 @@ Points are drawn over the coordinates of the table up to the heaviest load that 
 6208 with FVA 3. First: its ellipticity is new to the process, whose kernels are made for it. Again: the shortest of two
 more solves, with the same kernels. Differences are those from 51 x 18 and 76 x 27 cells, extrapolated as the others.
 
-FILE.nc is what `ehdmaps table make --points` wrote: node by node beside the shipped table, with the error that this
+FILE.nc is what `python -m examples.tables points` wrote: node by node beside the shipped table, with the error that it
 states there; "beyond" is the share of nodes that differ by more.
 """
 
@@ -21,9 +21,6 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.jobs.make.points.errors import random_points
-from ehdmaps.jobs.make.points.lines import group_problem
-from ehdmaps.jobs.make.points.table import SOLVED
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.solids import STEEL
@@ -35,6 +32,9 @@ from ehdmaps.point.two_grids import PointGroups, Resolution, solve_groups
 from ehdmaps.table.points.coordinates import point_load_number
 from ehdmaps.table.points.file import read_point_table, shipped_point_table
 from ehdmaps.table.points.nodes import ERRORS, FIELDS
+from examples.tables.point_errors import random_points
+from examples.tables.point_lines import group_problem
+from examples.tables.points import SOLVED
 
 SEED = 12345
 SHOWN = ("central_film", "minimum_film", "film_offset", "stiffness", "damping")

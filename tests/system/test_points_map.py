@@ -14,7 +14,7 @@ from scipy.io import loadmat
 import ehdmaps
 from ehdmaps.errors import MapError
 from ehdmaps.jobs import cli
-from ehdmaps.jobs.make.points.points_map import PointsRequest, points_map, reasons, usable
+from ehdmaps.jobs.make.points_map import PointsRequest, points_map, reasons, usable
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.solids import STEEL

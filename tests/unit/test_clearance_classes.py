@@ -11,7 +11,7 @@ import ehdmaps
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.cli import main
 from ehdmaps.jobs.defaults import designated_job
-from ehdmaps.jobs.make.points.points_map import PointsRequest
+from ehdmaps.jobs.make.points_map import PointsRequest
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.catalogue import designated

@@ -16,16 +16,6 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs.cli import main
-from ehdmaps.jobs.make import table_make
-from ehdmaps.jobs.make.table_make import (
-    PIEZOVISCOUS,
-    filled,
-    make_nodes,
-    measured,
-    middles,
-    piezoviscous_oil,
-    solve_table_line,
-)
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.contact import LineContact
@@ -39,6 +29,17 @@ from ehdmaps.table.file import SHIPPED, content_sha256, film_table, read_tables,
 from ehdmaps.table.films import TableFilms
 from ehdmaps.table.interpolation import Axes, place_of
 from ehdmaps.table.nodes import BEYOND_HEAVY, Nodes
+from examples.tables import lines as table_make
+from examples.tables.__main__ import main as make
+from examples.tables.lines import (
+    PIEZOVISCOUS,
+    filled,
+    make_nodes,
+    measured,
+    middles,
+    piezoviscous_oil,
+    solve_table_line,
+)
 from tests.benchmarks.film_table import BESIDE, LOADS, SPEEDS, SQUALANE, SURE, TEMPERATURES, bearings, oils
 from tests.cases.moes import load_and_speed
 
@@ -430,12 +431,12 @@ def test_the_command_makes_a_table_that_reads(
     for name in ("PIEZOVISCOUS", "ISOVISCOUS", "INCOMPRESSIBLE", "INCOMPRESSIBLE_ISOVISCOUS"):
         monkeypatch.setattr(table_make, name, _few(getattr(table_make, name), 10))
     path = tmp_path / "table.nc"
-    assert main(["table", "make", "-o", str(path)]) == 0
+    assert make(["lines", "-o", str(path)]) == 0
     assert set(read_tables(path).tables) == {"dowson-higginson", "incompressible"}
     assert main(["table", "show", str(path)]) == 0
     assert "L 3.1 to 10.5 (4)" in capsys.readouterr().out
     path.write_text("mine", encoding="utf-8")
-    assert main(["table", "make", "-o", str(path)]) == 2
+    assert make(["lines", "-o", str(path)]) == 2
     assert path.read_text(encoding="utf-8") == "mine"
 
 

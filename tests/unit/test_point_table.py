@@ -13,9 +13,6 @@ import pytest
 
 import ehdmaps
 from ehdmaps.errors import InputError, MapError, OutsideMapError
-from ehdmaps.jobs.make.points import errors, heavy, lines
-from ehdmaps.jobs.make.points import table as maker
-from ehdmaps.jobs.make.points.lines import SolvedPoint
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
@@ -29,6 +26,11 @@ from ehdmaps.table.points.file import SHIPPED, read_point_table, shipped_point_t
 from ehdmaps.table.points.films import NUMBERS
 from ehdmaps.table.points.nodes import ERRORS, FIELDS, HOLE
 from ehdmaps.table.points.response import read_response
+from examples.tables import point_errors as errors
+from examples.tables import point_heavy as heavy
+from examples.tables import point_lines as lines
+from examples.tables import points as maker
+from examples.tables.point_lines import SolvedPoint
 
 STEEL = 230.769e9
 OIL = Lubricant.roelands(viscosity=0.02, pressure_viscosity=2e-8, density=870.0)

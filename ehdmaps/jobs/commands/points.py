@@ -14,8 +14,8 @@ import xarray as xr
 from ehdmaps.errors import InputError, Problems
 from ehdmaps.exports.mat import KIND as MATLAB
 from ehdmaps.exports.mat import ascii_text, write_matlab
-from ehdmaps.jobs.make.points.asked import MADE
-from ehdmaps.jobs.make.points.points_map import (
+from ehdmaps.jobs.make.points_asked import MADE
+from ehdmaps.jobs.make.points_map import (
     DIMS,
     KIND,
     SIDES,
@@ -26,6 +26,7 @@ from ehdmaps.jobs.make.points.points_map import (
     usable,
     write_points_map,
 )
+from ehdmaps.jobs.solve.options import Options
 from ehdmaps.outputs import FIGURE, MARK, TABLE, Output, check_outputs, write_figure, write_text
 from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.table.points.films import NUMBERS
@@ -55,8 +56,8 @@ def run(arguments: argparse.Namespace, source: str) -> tuple[str, int]:
         Designation of the bearing, or file of the map.
     """
     names = (*_OF_LINES, *(_OF_PANELS if arguments.command == "plot" else ()))
-    options = [name for name in names if getattr(arguments, name, None) not in (None, False)]
-    problems = Problems(f"--{name.replace('_', '-')}: is one of line contacts; allowed: without it" for name in options)
+    problems = Problems()
+    Options(problems).refuse(arguments, names, "{}: is one of line contacts; allowed: without it")
     exported = arguments.command == "export"
     if exported and arguments.to not in EXPORTS:
         problems.append(
@@ -72,11 +73,8 @@ def run(arguments: argparse.Namespace, source: str) -> tuple[str, int]:
     elif arguments.oil is not None:
         problems.append(f"--oil: got {short(arguments.oil)} beside a map; allowed: with --bearing")
     elif exported:
-        for option in _POINT:
-            if getattr(arguments, option, None) is not None:
-                problems.append(
-                    f"--{option}: stands beside a map of points; allowed: with --bearing, read at that point"
-                )
+        beside = "{}: stands beside a map of points; allowed: with --bearing, read at that point"
+        Options(problems).refuse(arguments, _POINT, beside)
     problems.check()
     name = Path(source if request is None else request.file_name)
     output = None if arguments.command == "show" or not arguments.output else Path(arguments.output)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -38,10 +39,12 @@ from ehdmaps.outputs import FIGURE, Output, check_outputs
 from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.rheology import EYRING_STRESS, LIMITING_RATIO
-from ehdmaps.physics.solution import ContactSolution, ContactSolver, Status, contact_solution
+from ehdmaps.physics.solution import ContactSolution, ContactSolver, FilmSolution, Status, contact_solution
 from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, contact_spectrum
 from ehdmaps.program import tell
 from ehdmaps.units import LENGTH, LOAD, Display
+
+_BESIDE = "stands beside {}; allowed: one of the two; delete one"
 
 
 @dataclass(frozen=True)
@@ -64,15 +67,16 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     job, point = request.job, request.point
     outputs = film_outputs(job, arguments.fields, arguments.plot, arguments.job)
     solver = _solver(arguments, job)
+    beside: Sequence[Mapping[str, Any]] = [{}] * len(job.contacts)
+    table, films = "", list[FilmSolution]()
     if outputs:
         films, written = outputs.solve(solver, job, point)
         for line in written:
             tell(line)
         solutions = [contact_solution(film, contact, point) for film, contact in zip(films, job.contacts, strict=True)]
-    elif request.traction is not None:
-        return _with_traction(arguments, solver, request, request.traction)
-    elif request.supply is not None:
-        return _with_supply(arguments, solver, request, request.supply)
+    elif request.traction is not None or request.supply is not None:
+        films, beside, table = _with_more(solver, request)
+        solutions = [contact_solution(film, contact, point) for film, contact in zip(films, job.contacts, strict=True)]
     else:
         solutions = [_solved(solver, contact, request) for contact in job.contacts]
     frequency = 0.0 if request.frequencies is None else float(request.frequencies[0])
@@ -81,9 +85,10 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         for solution, contact in zip(solutions, job.contacts, strict=True)
     ]
     if arguments.json:
-        return records_json(records), _exit_status(records)
-    bands = band_lines(job, point) if job.tolerances and frequency == 0.0 else ()
-    return "\n".join([point_table(job, records, point, request.length), *bands]), _exit_status(records)
+        return records_json({**one, **more} for one, more in zip(records, beside, strict=True)), _exit_status(records)
+    bands = band_lines(job, point) if job.tolerances and frequency == 0.0 and not table else ()
+    lines = [point_table(job, records, point, request.length), *filter(None, [table]), *bands]
+    return "\n".join(lines), _exit_status(records)
 
 
 def _over_frequency(arguments: argparse.Namespace, request: _Request) -> tuple[str, int]:
@@ -110,42 +115,19 @@ def _over_frequency(arguments: argparse.Namespace, request: _Request) -> tuple[s
     return text, _exit_status(records)
 
 
-def _with_traction(
-    arguments: argparse.Namespace, solver: ContactSolver, request: _Request, slips: TractionRequest
-) -> tuple[str, int]:
-    """Solve each contact once, and tell its traction too."""
-    job, point = request.job, request.point
+def _with_more(solver: ContactSolver, request: _Request) -> tuple[list[FilmSolution], Sequence[Mapping[str, Any]], str]:
+    """Films with their traction over the slip, or behind an oil layer; what that adds to their records, and a table."""
     assert isinstance(solver, ReynoldsSolver)
-    solved = [solve_traction(solver, contact, job.lubricant, point, slips) for contact in job.contacts]
-    records = [
-        point_record(contact_solution(film, contact, point), contact, job, point, 0.0)
-        for (film, _), contact in zip(solved, job.contacts, strict=True)
-    ]
-    if arguments.json:
-        both = zip(records, solved, strict=True)
-        text = records_json([{**record, **traction_record(slips, mu)} for record, (_, mu) in both])
-    else:
-        coefficients = {contact.name: mu for contact, (_, mu) in zip(job.contacts, solved, strict=True)}
-        text = point_table(job, records, point, request.length) + "\n" + traction_table(slips, coefficients)
-    return text, _exit_status(records)
-
-
-def _with_supply(
-    arguments: argparse.Namespace, solver: ContactSolver, request: _Request, supply: OilSupply
-) -> tuple[str, int]:
-    """Solve each contact behind an oil layer."""
-    job, point = request.job, request.point
-    assert isinstance(solver, ReynoldsSolver)
-    films = {contact.name: solver.supplied_film(contact, job.lubricant, point, supply) for contact in job.contacts}
-    records = [
-        point_record(contact_solution(films[contact.name].film, contact, point), contact, job, point, 0.0)
-        for contact in job.contacts
-    ]
-    if arguments.json:
-        text = records_json([{**record, **supplied_record(supply, films[record["contact"]])} for record in records])
-    else:
-        text = point_table(job, records, point, request.length) + "\n" + supplied_table(supply, films)
-    return text, _exit_status(records)
+    job, slips, supply = request.job, request.traction, request.supply
+    at, names = (job.lubricant, request.point), [contact.name for contact in job.contacts]
+    if slips is not None:
+        films, coefficients = zip(*(solve_traction(solver, one, *at, slips) for one in job.contacts), strict=True)
+        table = traction_table(slips, dict(zip(names, coefficients, strict=True)))
+        return list(films), [traction_record(slips, mu) for mu in coefficients], table
+    assert supply is not None
+    found = [solver.supplied_film(contact, *at, supply) for contact in job.contacts]
+    table = supplied_table(supply, dict(zip(names, found, strict=True)))
+    return [one.film for one in found], [supplied_record(supply, one) for one in found], table
 
 
 def _exit_status(records: list[dict[str, Any]]) -> int:
@@ -207,7 +189,7 @@ def _read(arguments: argparse.Namespace) -> _Request:
     if job is not None:
         job = _with_stated(arguments, job, problems)
     traction = _traction(arguments, job, read, problems)
-    supply = _supply(arguments, job, problems)
+    supply = _supply(arguments, job, read, problems)
     if problems or job is None:
         raise InputError(problems)
     return _Request(job, OperatingPoint(load, speed, temperature), length, frequencies, traction, supply)
@@ -264,9 +246,7 @@ def _traction(
         )
     if job is not None and job.solver != "reynolds":
         problems.append(f"{option}: the solver {job.solver!r} keeps no film for it; allowed: with --solver reynolds")
-    for other in ("frequency", "fields", "plot"):
-        if getattr(arguments, other) is not None:
-            problems.append(f"{option}: stands beside --{other}; allowed: one of the two; delete one")
+    read.refuse(arguments, ("frequency", "fields", "plot"), f"{option}: {_BESIDE}")
     ratios = read.spaced(
         option, arguments.slide_to_roll, lambda text: read.number(option, text, LEAST_SLIP, MOST_SLIP), MOST_SLIPS
     )
@@ -278,7 +258,7 @@ def _traction(
     return None if len(problems) > before or ratios is None else TractionRequest(ratios, eyring, ratio)
 
 
-def _supply(arguments: argparse.Namespace, job: Job | None, problems: Problems) -> OilSupply | None:
+def _supply(arguments: argparse.Namespace, job: Job | None, read: Options, problems: Problems) -> OilSupply | None:
     """Supply of --supply; None where there is none, or a problem was noted."""
     if arguments.supply is None:
         return None
@@ -288,10 +268,7 @@ def _supply(arguments: argparse.Namespace, job: Job | None, problems: Problems) 
         problems.append(
             f"--supply: stands beside {words[2:]}; allowed: with isothermal, newtonian films of pure rolling"
         )
-    for other in ("frequency", "slide_to_roll", "fields", "plot"):
-        if getattr(arguments, other) is not None:
-            option = other.replace("_", "-")
-            problems.append(f"--supply: stands beside --{option}; allowed: one of the two; delete one")
+    read.refuse(arguments, ("frequency", "slide_to_roll", "fields", "plot"), f"--supply: {_BESIDE}")
     with problems.after("--supply: "):
         return supply_from_text(arguments.supply)
     return None

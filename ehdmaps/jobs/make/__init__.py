@@ -9,7 +9,6 @@ log                what happened in all runs that worked on a map, in a file bes
 sampling           random operating points of a job
 table_films        films of a map from the film table, or why not
 table_law          laws without a file of a map
-table_make         the film table itself
 correction_design  where a dearer solver is asked for what a cheaper one gets wrong
 correction         films of one solver corrected by few points of a dearer one
 law_check          the contact laws against fresh solves
@@ -17,7 +16,8 @@ spacing            errors of contact laws between the points of a map
 assemble           results -> dataset of the map, isolated holes filled from their neighbours
 report             statuses by cause, error estimates, correction, in lines
 generate           the whole story: job -> map file, or a map in memory
-points             the film table of points, and maps of points of ball bearings
+points_asked       whether a command is about a map of points
+points_map         that map: films of both contacts of a ball bearing, read from the table of points
 batch              a batch file: bearings x oils x overrides
 batch_generate     its maps
 batch_table        these as a table

@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ehdmaps.figures import COLOURS, typeset, write_heading
-from ehdmaps.jobs.make.points.points_map import SIDES
+from ehdmaps.jobs.make.points_map import SIDES
 from ehdmaps.units import DAMPER, FILM, SPEED, SPRING, TEMPERATURE
 
 SIZE = (11.0, 7.6)

@@ -67,8 +67,8 @@ _BESIDE = 0.1 * np.arange(-4.0, 5.0)
 """ln of loads beside one, by which the stiffness of a film on a layer is known."""
 
 _FASTEST = 1e6 * math.pi / 30.0
-_OF_LINES = (*("length", "shear_stress", "slide_to_roll", "limiting_ratio", "shear"),)
-"""Options of line contacts."""
+_OF_LINES, _OF_CFD = ("length", "shear_stress", "slide_to_roll", "limiting_ratio", "shear"), ("fields", "keep_cases")
+"""Options of line contacts, and of CFD."""
 
 
 @dataclass(frozen=True)
@@ -202,19 +202,20 @@ def _read(arguments: argparse.Namespace) -> _Request:
     problems = Problems()
     if arguments.job is not None and arguments.bearing is not None:
         problems.append(f"--bearing: got {short(arguments.bearing)} beside a job; allowed: one of the two")
-    for name in _OF_LINES:
-        if getattr(arguments, name, None) is not None:
-            option = name.replace("_", "-")
-            problems.append(f"--{option}: is one of line contacts; allowed: without it for the balls of a bearing")
+    read = Options(problems)
+    read.refuse(arguments, _OF_LINES, "{}: is one of line contacts; allowed: without it for the balls of a bearing")
     if arguments.solver not in (None, REYNOLDS, OPENFOAM):
         problems.append(
             f"--solver: got {short(arguments.solver)}; allowed: {REYNOLDS}, {OPENFOAM} for the balls of a bearing"
         )
     by_cfd = arguments.solver == OPENFOAM
-    problems += _of_the_other_solver(arguments, by_cfd)
-
-    read = Options(problems)
-
+    if not by_cfd:
+        read.refuse(arguments, _OF_CFD, f"{{}}: is one of OpenFOAM; allowed: with --solver {OPENFOAM}")
+    else:
+        beside = f"{{}}: stands beside --solver {OPENFOAM}, which has k and c of slow motion of a ball; allowed: "
+        read.refuse(arguments, ("frequency",), f"{beside}--solver {REYNOLDS}")
+        if arguments.films == TABLE:
+            problems.append(f"--films: got {TABLE} beside --solver {OPENFOAM}; allowed: {SOLVED}")
     bearing: BallGeometry | None = None
     oil: Lubricant | None = None
     with problems:
@@ -274,22 +275,6 @@ def _physics(arguments: argparse.Namespace, oil: Lubricant | None, problems: Pro
         with problems.after("--physics: "):
             heat_data(oil, STEEL)
     return physics
-
-
-def _of_the_other_solver(arguments: argparse.Namespace, by_cfd: bool) -> list[str]:
-    """Say which options belong to the solver that is not asked."""
-    if not by_cfd:
-        given = [name for name in ("fields", "keep_cases") if getattr(arguments, name, None) is not None]
-        return [f"--{name.replace('_', '-')}: is one of OpenFOAM; allowed: with --solver {OPENFOAM}" for name in given]
-    problems = []
-    if arguments.frequency is not None:
-        problems.append(
-            f"--frequency: stands beside --solver {OPENFOAM}, which has k and c of slow motion of a ball; allowed: "
-            f"--solver {REYNOLDS}"
-        )
-    if arguments.films == TABLE:
-        problems.append(f"--films: got {TABLE} beside --solver {OPENFOAM}; allowed: {SOLVED}")
-    return problems
 
 
 def _heading(request: _Request) -> str:

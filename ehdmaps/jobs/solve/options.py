@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import math
 from collections.abc import Callable, Sequence
 from typing import Protocol
@@ -57,6 +58,21 @@ class Options:
 
     def __init__(self, problems: Problems) -> None:
         self._problems = problems
+
+    def refuse(self, arguments: argparse.Namespace, names: Sequence[str], words: str) -> None:
+        """Note each of some options that is given.
+
+        Parameters
+        ----------
+        arguments : argparse.Namespace
+            What was given.
+        names : sequence of str
+            The options, as attributes.
+        words : str
+            What is wrong, and allowed, with ``{}`` in place of the option.
+        """
+        given = (name for name in names if getattr(arguments, name, None) not in (None, False))
+        self._problems += [words.format(f"--{name.replace('_', '-')}") for name in given]
 
     def quantity(self, option: str, text: str | None, unit: str, limits: Limits, display: Display) -> float:
         """A quantity within limits, all in the unit.

@@ -109,9 +109,8 @@ def _named(name: str, bearing: BearingGeometry, places: FloatArray) -> FloatArra
 def _read(arguments: argparse.Namespace) -> _Request:
     """Read the arguments; all problems at once."""
     problems = Problems()
-    for name in (*_REFUSED, *_REFUSED_TOO):
-        if getattr(arguments, name, None) is not None:
-            problems.append(f"--{name.replace('_', '-')}: not with --solver {NAME}; leave it out")
+    read = Options(problems)
+    read.refuse(arguments, (*_REFUSED, *_REFUSED_TOO), f"{{}}: not with --solver {NAME}; leave it out")
     job: Job | None = None
     with problems:
         job = read_job(arguments.job)
@@ -126,7 +125,6 @@ def _read(arguments: argparse.Namespace) -> _Request:
         if np.max(np.abs(profile(places) - profile(-places))) > _ROUND_OFF * bearing.roller_diameter:
             problems.append(f"--solver {NAME}: got a profile that differs on both sides; allowed: alike on both")
 
-    read = Options(problems)
     load = read.quantity("--load", arguments.load, "N", (1e-3, 1e9), FORCE)
     speed = read.speed(arguments.speed, bearing, (SPEED_AXIS.low, SPEED_AXIS.high), (1e-3, 1e6))
     temperature = read.temperature(arguments.temperature, None if job is None else job.lubricant)

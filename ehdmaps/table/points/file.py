@@ -58,7 +58,7 @@ def read_point_table(path: Path) -> PointTable:
             file.set_auto_mask(False)
             attributes = {name: str(file.getncattr(name)) for name in file.ncattrs()}
             if (attributes.get(MADE_AS), attributes.get("table_format")) != (KIND, FORMAT):
-                raise MapError(f"{path}: is no {KIND} of this version; make one by `ehdmaps table make --points`")
+                raise MapError(f"{path}: is no {KIND} of this version; take the one that comes with ehdmaps")
             if attributes["errors"].split() != list(ERRORS):
                 raise MapError(f"{path}: holds other numbers than this version reads; make it again")
             axes = PointAxes(*(np.asarray(file[name][:], dtype=float) for name in AXES))

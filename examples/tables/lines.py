@@ -345,6 +345,6 @@ def make_tables(progress: Callable[[str, int, int], None] = lambda law, done, of
             "source": "solver reynolds of ehdmaps",
             "settings": str(RESOLUTION),
             "software": version(),
-            "made_by": "ehdmaps table make",
+            "made_by": "python -m examples.tables lines",
         },
     )

@@ -16,10 +16,10 @@ from scipy.ndimage import uniform_filter
 from scipy.stats import binom
 
 from ehdmaps.arrays import BoolArray, FloatArray
-from ehdmaps.jobs.make.points.lines import SolvedPoint, finer_point, group_problem
 from ehdmaps.physics.point.ellipse import elliptic_numbers
 from ehdmaps.table.points.coordinates import PointAxes, point_load_number
 from ehdmaps.table.points.nodes import ERRORS, RESPONSES, PointNodes
+from examples.tables.point_lines import SolvedPoint, finer_point, group_problem
 
 COVERED, CONFIDENT = 0.95, 0.9
 """Part of all points that is to lie within what is stated, and how sure that is by so few finer ones."""

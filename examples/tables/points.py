@@ -13,7 +13,14 @@ from dataclasses import replace
 import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray
-from ehdmaps.jobs.make.points.errors import (
+from ehdmaps.table.file import rounded
+from ehdmaps.table.nodes import encoded
+from ehdmaps.table.points.coordinates import PointAxes
+from ehdmaps.table.points.films import PointTable
+from ehdmaps.table.points.nodes import ERRORS, FIELDS, FILMS, PointNodes
+from ehdmaps.version import version
+from examples.tables.lines import middles
+from examples.tables.point_errors import (
     COVERED,
     FINER,
     SEED,
@@ -24,15 +31,8 @@ from ehdmaps.jobs.make.points.errors import (
     random_points,
     read_errors,
 )
-from ehdmaps.jobs.make.points.heavy import HEAVY, RESOLVED, continued_lines
-from ehdmaps.jobs.make.points.lines import RESOLUTION, THIN_RESOLUTION, solve_point_line
-from ehdmaps.jobs.make.table_make import middles
-from ehdmaps.table.file import rounded
-from ehdmaps.table.nodes import encoded
-from ehdmaps.table.points.coordinates import PointAxes
-from ehdmaps.table.points.films import PointTable
-from ehdmaps.table.points.nodes import ERRORS, FIELDS, FILMS, PointNodes
-from ehdmaps.version import version
+from examples.tables.point_heavy import HEAVY, RESOLVED, continued_lines
+from examples.tables.point_lines import RESOLUTION, THIN_RESOLUTION, solve_point_line
 
 SOLVED = 6.2
 """zeta of the heaviest load that is solved."""
@@ -189,7 +189,7 @@ def provenance(
         "source": "solver ehdmaps.point",
         "settings": f"{RESOLUTION}; thin films {THIN_RESOLUTION}",
         "software": version(),
-        "made_by": "ehdmaps table make --points",
+        "made_by": "python -m examples.tables points",
         "solved": f"{films} of {tried} nodes that were tried",
         "continued": f"{np.count_nonzero(heavy)} cells; a unit of ln M adds to their errors {grown}",
         "scales": f"errors times {' '.join(f'{scale:.3g}' for scale in scales)}, so that {100 * COVERED:g} % lie "

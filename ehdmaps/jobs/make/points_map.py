@@ -17,7 +17,7 @@ import xarray as xr
 
 from ehdmaps.arrays import variable
 from ehdmaps.errors import InputError, MapError, Problems
-from ehdmaps.jobs.make.points.asked import ENDING, MADE
+from ehdmaps.jobs.make.points_asked import ENDING, MADE
 from ehdmaps.netcdf_structure import DAMAGE, structure_problem
 from ehdmaps.outputs import MADE_AS, dataset_kind, written_aside
 from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, heat_data
