@@ -19,8 +19,7 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make import generate as generating
 from ehdmaps.jobs.make.batch import SUMMARY, Batch, is_batch, read_batch
 from ehdmaps.jobs.make.batch_generate import generate_batch as many_maps
-from ehdmaps.jobs.make.batch_generate import make_folder
-from ehdmaps.jobs.make.batch_table import table_dataset, write_table
+from ehdmaps.jobs.make.batch_generate import make_folder, table_dataset, write_table
 from ehdmaps.jobs.make.sweep import Progress
 from ehdmaps.jobs.make.table_films import unserved
 from ehdmaps.jobs.reader import read_job

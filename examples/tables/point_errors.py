@@ -17,8 +17,7 @@ from scipy.stats import binom
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.physics.point.ellipse import elliptic_numbers
-from ehdmaps.table.points.coordinates import PointAxes, point_load_number
-from ehdmaps.table.points.nodes import ERRORS, RESPONSES, PointNodes
+from ehdmaps.table.points.nodes import ERRORS, RESPONSES, PointAxes, PointNodes, point_load_number
 from examples.tables.point_lines import SolvedPoint, finer_point, group_problem
 
 COVERED, CONFIDENT = 0.95, 0.9

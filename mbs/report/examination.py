@@ -20,7 +20,7 @@ from mbs.analyses.modes import ModesResult, modes
 from mbs.analyses.operating import operating
 from mbs.analyses.statics import StaticsResult, statics
 from mbs.analyses.sweep import CriticalResult, SweepSettings, critical, sweep
-from mbs.budget.sources import error_budget
+from mbs.budget import error_budget
 from mbs.linearised.averaged import mean_equilibrium
 from mbs.linearised.mode_names import mode_names
 from mbs.linearised.modes import modes as modes_at

@@ -1,8 +1,7 @@
 """Time data of runs, simulated or measured: in, out, and with the speed that belongs to them.
 
 ===========  ====================================================================================
-records      channels over time, with speed and angle where they are known
-quantities   which units a channel may have, and what was measured by them
+records      channels over time and their units, with speed and angle where they are known
 csv_file     tables of numbers with names and units in their first line
 uff_file     universal files, datasets 58
 wav_file     sound files with a table that says the scale; one to listen to

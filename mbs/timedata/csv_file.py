@@ -30,8 +30,7 @@ from ehdmaps.errors import InputError, Problems
 from ehdmaps.inputs import check_input, decimal_points, first_bytes, separator
 from ehdmaps.outputs import MARK, TABLE, written_aside
 from ehdmaps.units import RPM, short
-from mbs.timedata.quantities import read_unit
-from mbs.timedata.records import MOST, MOST_CHANNELS, TimeChannel, TimeData, TimeRecord
+from mbs.timedata.records import MOST, MOST_CHANNELS, TimeChannel, TimeData, TimeRecord, read_unit
 
 LONGEST_FILE = 2**31
 """Bytes."""

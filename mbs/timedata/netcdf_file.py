@@ -18,8 +18,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.inputs import check_input
 from ehdmaps.netcdf_structure import DAMAGE, structure_problem
 from mbs.settings import CampbellSettings
-from mbs.timedata.quantities import read_unit
-from mbs.timedata.records import MOST, MOST_CHANNELS, TimeChannel, TimeData, TimeRecord
+from mbs.timedata.records import MOST, MOST_CHANNELS, TimeChannel, TimeData, TimeRecord, read_unit
 
 LONGEST_FILE = 2**34
 """Bytes."""

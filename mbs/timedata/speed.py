@@ -23,8 +23,7 @@ from ehdmaps.errors import InputError, Problems
 from ehdmaps.units import RPM
 from mbs.timedata.csv_file import read_table
 from mbs.timedata.pulses import FEWEST, counted, rising_flanks
-from mbs.timedata.quantities import SPEED_UNITS
-from mbs.timedata.records import TimeRecord, chosen
+from mbs.timedata.records import SPEED_UNITS, TimeRecord, chosen
 
 MOST_PULSES = 100_000
 """A turn."""

@@ -14,8 +14,7 @@ import numpy as np
 from ehdmaps.errors import InputError
 from ehdmaps.units import RPM
 from mbs.modal.uff import CODES, TIME, Dataset, ascii_text, function_of, time_records, write_sets
-from mbs.timedata.quantities import Recorded, read_unit
-from mbs.timedata.records import TimeChannel, TimeData, TimeRecord
+from mbs.timedata.records import Recorded, TimeChannel, TimeData, TimeRecord, read_unit
 
 _RPM = 19
 """Data type of a rotational speed."""

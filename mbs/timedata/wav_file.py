@@ -37,8 +37,7 @@ from ehdmaps.errors import InputError, Problems
 from ehdmaps.inputs import check_input, first_bytes, read_text
 from ehdmaps.outputs import MARK, Kind, has_mark, written_aside
 from ehdmaps.units import RPM, closest, short
-from mbs.timedata.quantities import read_unit
-from mbs.timedata.records import LARGEST, MOST_CHANNELS, TimeChannel, TimeData, TimeRecord, chosen
+from mbs.timedata.records import LARGEST, MOST_CHANNELS, TimeChannel, TimeData, TimeRecord, chosen, read_unit
 
 LONGEST_FILE = 2**32 - 1
 """Bytes: more do not fit into the format."""

@@ -28,9 +28,8 @@ from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.point.solver import solve
 from ehdmaps.table.file import shipped_tables
-from ehdmaps.table.points.coordinates import point_zeta
 from ehdmaps.table.points.file import shipped_point_table
-from ehdmaps.table.points.nodes import ERRORS, FILMS, SLOPE
+from ehdmaps.table.points.nodes import ERRORS, FILMS, SLOPE, point_zeta
 from examples.tables.point_errors import SEED as SET
 from examples.tables.point_errors import finer_points, random_points, read_errors
 from examples.tables.point_lines import RESOLUTION, THIN_RESOLUTION

@@ -29,9 +29,8 @@ from ehdmaps.point.problem import PointProblem
 from ehdmaps.point.solver import point_groups
 from ehdmaps.point.tail import similarity
 from ehdmaps.point.two_grids import PointGroups, Resolution, solve_groups
-from ehdmaps.table.points.coordinates import point_load_number
 from ehdmaps.table.points.file import read_point_table, shipped_point_table
-from ehdmaps.table.points.nodes import ERRORS, FIELDS
+from ehdmaps.table.points.nodes import ERRORS, FIELDS, point_load_number
 from examples.tables.point_errors import random_points
 from examples.tables.point_lines import group_problem
 from examples.tables.points import SOLVED

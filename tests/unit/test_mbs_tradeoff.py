@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.trade.budget import budget
+from ehdmaps.trade.record import budget
 from mbs import assemble, parse_scene, read_scene
-from mbs.budget import sources
-from mbs.budget.linear_look import LinearReference, linear_look
-from mbs.budget.sources import error_budget
+from mbs import budget as sources
+from mbs.budget import LinearReference, error_budget, linear_look
 from mbs.cli import main
 from mbs.laboratory.tradeoff import machines as analysis
 from mbs.laboratory.tradeoff.answer import answer_lines

@@ -13,8 +13,7 @@ from matplotlib.collections import LineCollection
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.show.budget_chart import budget_section
-from ehdmaps.trade.budget import budget, budget_axis, budget_marks
-from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Scope, Source, Trade
+from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Scope, Source, Trade, budget, budget_axis, budget_marks
 from mbs.laboratory.tradeoff.answer import answer_lines, budget_lines, cheapest, number, time_text
 from mbs.laboratory.tradeoff.data import check_trade_files, trade_dataset, trade_json, write_trade
 from mbs.laboratory.tradeoff.figure import front, trade_figure

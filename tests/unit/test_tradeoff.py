@@ -11,16 +11,19 @@ import pytest
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.budget.answers import Answer, Question, film_answer, scales
 from ehdmaps.jobs.budget.contact_ways import (
+    Answer,
     Flooded,
     FromLaw,
     LayerRule,
     LockedPole,
+    Question,
     RoughRule,
     Slow,
+    film_answer,
     more_piezoviscous,
     other_solids,
+    scales,
     warmer,
 )
 from ehdmaps.jobs.budget.entries import sources
@@ -39,8 +42,7 @@ from ehdmaps.physics.solution import ContactSolverDefaults, FilmSolution, Status
 from ehdmaps.physics.surface import Surface
 from ehdmaps.trade.record import Choice, Entry, Group, Trade
 from mbs.laboratory.tradeoff.contacts import measure
-from mbs.laboratory.tradeoff.contestants import contestants
-from mbs.laboratory.tradeoff.solved_ways import AtFrequency, FromTable, OnLayer
+from mbs.laboratory.tradeoff.contestants import AtFrequency, FromTable, OnLayer, contestants
 from tests.cases.jobs import LINE, SMALL
 from tests.cases.laws import CONTACTS, NU308, OIL, SMALL_FIELD
 

@@ -23,7 +23,7 @@ from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import Surface
-from mbs.laboratory.tradeoff.solved_ways import solved_sharing
+from mbs.laboratory.tradeoff.contestants import solved_sharing
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD
 
 INNER = CONTACTS[0]

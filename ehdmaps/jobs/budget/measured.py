@@ -3,6 +3,8 @@
 Numerical error is what a choice differs by from the finest affordable solution of its own model; error of the model is
 what that one differs by from the reference. Both are relative to the reference, see `answers`, so
 that at each point they add up to the error.
+
+Error budget of a map at few random points, for its report: films of the film table, rules, some fresh solves.
 """
 
 from __future__ import annotations
@@ -10,22 +12,28 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import get_args
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiling import cpu_seconds
-from ehdmaps.errors import InputError
-from ehdmaps.jobs.budget.answers import QUANTITIES, Answer, Question, scales
-from ehdmaps.jobs.budget.contact_ways import ContactModel
-from ehdmaps.jobs.budget.entries import ContactEntry
+from ehdmaps.errors import EhdmapsError, InputError
+from ehdmaps.jobs.budget.contact_ways import QUANTITIES, Answer, ContactModel, Question, scales
+from ehdmaps.jobs.budget.entries import ContactEntry, quick, sources
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.sampling import VALLEY_SHARE, SamplePoint, draw_sample, log_uniform
+from ehdmaps.jobs.reader import parse_job
+from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.law import ContactLaw, LawKind
 from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.contact import OperatingPoint
+from ehdmaps.physics.oil_supply import FLOODED
 from ehdmaps.physics.solution import natural_to_hertz
 from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY
-from ehdmaps.trade.record import Choice, ErrorSummary, Group, Judged
+from ehdmaps.physics.surface import SMOOTH
+from ehdmaps.program import plain
+from ehdmaps.trade.record import Choice, ErrorSummary, Group, Judged, Trade
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 
 NATURAL_FREQUENCIES = (0.1, 10.0)
@@ -242,3 +250,48 @@ def _values(answers: Sequence[Answer], name: str) -> FloatArray:
 def _column(rows: Sequence[Mapping[str, float]], name: str) -> FloatArray:
     """Numbers of one name as an array; NaN where there is none."""
     return np.array([row.get(name, math.nan) for row in rows], dtype=np.float64)
+
+
+POINTS, SEED = 12, 1
+"""Size of the sample, and its seed."""
+
+
+def map_budget(emap: EHDMap) -> Trade | str:
+    """Measure sources of error at some points of a map; or say why that cannot be.
+
+    Parameters
+    ----------
+    emap : EHDMap
+        The map.
+    """
+    try:
+        name = plain(emap.dataset.attrs.get("job_name", "map"))
+        job = parse_job(str(emap.dataset.attrs["job_toml"]), name, "job of the map", emap.dataset.attrs.get("solver"))
+        questions, entries = drawn(job, POINTS, SEED), quick(job, _laws(emap))
+        found = measured(entries, questions)
+    except EhdmapsError as error:
+        return str(error)
+    sample = f"{sample_words(job, len(questions), SEED)}; ehdmaps tradeoff takes more points, and finer solutions."
+    return Trade(
+        level="contact",
+        title=f"Error budget of {job.title}",
+        cost="s a point",
+        reference="what is known cheaply",
+        judged=JUDGED,
+        choices=found.choices,
+        frame=(f"Against what is known cheaply. {sample}",),
+        sources=sources(entries),
+        shown=SHOWN,
+    )
+
+
+def _laws(emap: EHDMap) -> dict[str, ContactLaw]:
+    """Flooded, smooth laws of the contacts of a map; none where none can be made."""
+    try:
+        return {
+            kind: emap.law(kind, outside="asymptote", supply=FLOODED, surface=SMOOTH)
+            for kind in get_args(LawKind)
+            if kind in {contact.name for contact in emap.contacts}
+        }
+    except EhdmapsError:
+        return {}

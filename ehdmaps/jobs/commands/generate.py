@@ -14,9 +14,8 @@ from ehdmaps.jobs import solvers
 from ehdmaps.jobs.executors import executor_problem, named_executor
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.batch import SUMMARY, is_batch, read_batch
-from ehdmaps.jobs.make.batch_generate import batch_path, generate_batch, make_folder
-from ehdmaps.jobs.make.batch_table import summary as batch_summary
-from ehdmaps.jobs.make.batch_table import write_table
+from ehdmaps.jobs.make.batch_generate import batch_path, generate_batch, make_folder, write_table
+from ehdmaps.jobs.make.batch_generate import summary as batch_summary
 from ehdmaps.jobs.make.generate import generate, summary
 from ehdmaps.jobs.make.law_check import TOLERANCES, unmet
 from ehdmaps.jobs.make.report import holes, unsolved

@@ -7,8 +7,7 @@ from pathlib import Path
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.show.opening import open_given
-from ehdmaps.jobs.show.panel_plot import chosen_panels, plot_panels, write_drawn
-from ehdmaps.jobs.show.plot import plot_map
+from ehdmaps.jobs.show.plot import chosen_panels, plot_map, plot_panels, write_drawn
 from ehdmaps.jobs.show.rough_plot import plot_roughness
 from ehdmaps.outputs import FIGURE, TABLE, Output, check_outputs
 

@@ -7,7 +7,7 @@ import shlex
 from pathlib import Path
 
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.budget.map_budget import map_budget
+from ehdmaps.jobs.budget.measured import map_budget
 from ehdmaps.jobs.show.map_report import map_report
 from ehdmaps.jobs.show.opening import choice_words, open_given
 from ehdmaps.outputs import Output, check_outputs

@@ -38,7 +38,7 @@ def shown(table: TableFile | PointTable) -> str:
     Returns
     -------
     str
-        Lines.
+        The table as it is printed.
     """
     provenance = [f"{name}: {value}" for name, value in sorted(table.attributes.items())]
     more = _of_lines(table) if isinstance(table, TableFile) else _of_points(table)

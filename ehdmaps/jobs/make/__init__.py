@@ -19,7 +19,6 @@ generate           the whole story: job -> map file, or a map in memory
 points_asked       whether a command is about a map of points
 points_map         that map: films of both contacts of a ball bearing, read from the table of points
 batch              a batch file: bearings x oils x overrides
-batch_generate     its maps
-batch_table        these as a table
+batch_generate     its maps, and these as a table
 =================  ===================================================================================
 """

@@ -1,4 +1,4 @@
-"""An error budget as a section of a report: bars of `ehdmaps.trade.budget`, drawn without a picture."""
+"""An error budget as a section of a report: bars of `ehdmaps.trade`, drawn without a picture."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ from collections.abc import Iterator, Sequence
 from ehdmaps.figures import COLOURS, typeset
 from ehdmaps.report.chart import number
 from ehdmaps.report.page import Markup, Section, sentences, tag
-from ehdmaps.trade.budget import BUDGET_WORDS, Bar, Mark, budget, budget_axis, budget_marks
-from ehdmaps.trade.record import Trade
+from ehdmaps.trade.record import BUDGET_WORDS, Bar, Mark, Trade, budget, budget_axis, budget_marks
 
 _WIDTH, _LEFT, _RIGHT, _TOP, _FOOT = 860.0, 270.0, 20.0, 10.0, 46.0
 _BAR, _GAP = 13.0, 9.0

@@ -44,7 +44,6 @@ from ehdmaps.table.fields import FILMS
 from ehdmaps.table.file import shipped_tables
 from ehdmaps.table.interpolation import DEGREE, Axes, knots_of
 from ehdmaps.table.nodes import Nodes
-from ehdmaps.table.points import coordinates as point_coordinates
 from ehdmaps.table.points import films as point_films
 from ehdmaps.table.points import nodes as point_nodes
 from ehdmaps.table.points.file import shipped_point_table
@@ -283,7 +282,7 @@ def _constants() -> dict[str, Any]:
         (films, ("WORST_ERROR",)),
         (closed_form, ("HEAVIEST_LOAD_NUMBER", "LIGHTEST_LOAD_NUMBER", "THICKEST_FILM")),
         (hertz, ("LARGEST_PRESSURE",)),
-        (point_coordinates, ("KNEE", "KNEE_OF_KAPPA", "KNEE_OF_L", "KNEE_L")),
+        (point_nodes, ("KNEE", "KNEE_OF_KAPPA", "KNEE_OF_L", "KNEE_L")),
         (point_films, ("LIGHTEST",)),
         (dielectric, ("VACUUM",)),
     )

@@ -232,7 +232,7 @@ def map_report(emap: EHDMap, name: str, command: str, budget: Trade | str | None
     command : str
         Command line that asks for it.
     budget : Trade or str, optional
-        Error budget of the map, or why there is none, see `ehdmaps.jobs.budget.map_budget`.
+        Error budget of the map, or why there is none, see `ehdmaps.jobs.budget.measured`.
 
     Raises
     ------

@@ -14,9 +14,8 @@ from ehdmaps.netcdf_structure import DAMAGE, opened
 from ehdmaps.outputs import MADE_AS
 from ehdmaps.table.file import CHECKSUM
 from ehdmaps.table.nodes import nodes_problem
-from ehdmaps.table.points.coordinates import PointAxes
 from ehdmaps.table.points.films import PointTable
-from ehdmaps.table.points.nodes import ERRORS, FIELDS, PointNodes
+from ehdmaps.table.points.nodes import ERRORS, FIELDS, PointAxes, PointNodes
 
 SHIPPED = "point_table.nc"
 """Name of the shipped file in this package."""
@@ -24,7 +23,7 @@ SHIPPED = "point_table.nc"
 KIND, FORMAT = "film table of points", "2"
 
 AXES = {
-    "zeta": ("ln(M/M_knee(L, kappa)), see ehdmaps.table.points.coordinates", "1"),
+    "zeta": ("ln(M/M_knee(L, kappa)), see ehdmaps.table.points.nodes", "1"),
     "size": ("ln L, of Moes' oil number L", "1"),
     "shape": ("ln kappa, the ellipticity of the dry contact", "1"),
     "alpha": ("ln alpha, alpha = d ln eta/dp at p = 0 in 1/Pa", "1"),

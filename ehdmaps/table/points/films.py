@@ -24,8 +24,18 @@ from ehdmaps.physics.solution import Status
 from ehdmaps.table.coordinates import bend_of
 from ehdmaps.table.fields import NATURAL_FREQUENCIES
 from ehdmaps.table.oils import BESIDE, exponent_at, matched_pressure, oil_states
-from ehdmaps.table.points.coordinates import PointUnits, point_load_number, point_units, point_zeta
-from ehdmaps.table.points.nodes import ERRORS, FIELDS, FILMS, RESPONSES, SLOPE, PointNodes
+from ehdmaps.table.points.nodes import (
+    ERRORS,
+    FIELDS,
+    FILMS,
+    RESPONSES,
+    SLOPE,
+    PointNodes,
+    PointUnits,
+    point_load_number,
+    point_units,
+    point_zeta,
+)
 
 LIGHTEST = -14.0
 """zeta of the lightest load: a millionth of that of the first node."""

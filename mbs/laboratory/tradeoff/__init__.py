@@ -1,8 +1,7 @@
 """Speed against accuracy: ways to an answer are drawn up, asked, held against their reference, and answered for.
 
 ============  ==============================================================================
-solved_ways   dear ways of computing a contact
-contestants   who takes part among contacts
+contestants   who takes part among contacts, and dear ways of computing one
 contacts      contacts at random points of a job
 ramp_parts    short runs around some speeds of a ramp
 machines      laws, supplies, maps, slices, cut-off, step and cage angles of a scene

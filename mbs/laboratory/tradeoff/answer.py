@@ -9,8 +9,7 @@ import math
 from collections.abc import Iterator
 from itertools import groupby
 
-from ehdmaps.trade.budget import budget
-from ehdmaps.trade.record import Choice, ErrorSummary, Scope, Trade
+from ehdmaps.trade.record import Choice, ErrorSummary, Scope, Trade, budget
 
 TOLERANCES = (0.1, 1.0, 5.0)
 """Tolerances for which a choice is named [% or dB]."""

@@ -8,8 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.budget.answers import COMPLIANCE_SHARE, DAMPING_SHARE, Answer, Question, scales
-from ehdmaps.jobs.budget.contact_ways import ContactModel
+from ehdmaps.jobs.budget.contact_ways import COMPLIANCE_SHARE, DAMPING_SHARE, Answer, ContactModel, Question, scales
 from ehdmaps.jobs.budget.entries import TABLE, ContactEntry, sources
 from ehdmaps.jobs.budget.measured import (
     JUDGED,

@@ -15,8 +15,7 @@ import xarray as xr
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.outputs import FIGURE, MADE_AS, Output, check_outputs, dataset_kind, write_figure, written_aside
-from ehdmaps.trade.budget import budget
-from ehdmaps.trade.record import Choice, ErrorSummary, Trade
+from ehdmaps.trade.record import Choice, ErrorSummary, Trade, budget
 from mbs.laboratory.tradeoff.answer import answer_lines, budget_lines
 
 _PARTS = (

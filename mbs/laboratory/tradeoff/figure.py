@@ -12,8 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ehdmaps.figures import COLOURS, typeset, write_heading
-from ehdmaps.trade.budget import BUDGET_WORDS, Bar, budget, budget_axis, budget_marks
-from ehdmaps.trade.record import Choice, Judged, Trade
+from ehdmaps.trade.record import BUDGET_WORDS, Bar, Choice, Judged, Trade, budget, budget_axis, budget_marks
 from mbs.laboratory.tradeoff.answer import number
 
 _COLUMNS, _PANEL = 2, (4.0, 3.2)

@@ -27,14 +27,17 @@ from mbs.analyses.case import Progress, silent
 from mbs.analyses.operating import held
 from mbs.analyses.ramp import recorded_run, run_course
 from mbs.analyses.sensors import looked_at
-from mbs.budget.linear_look import LinearDifferences, LinearLook, LinearReference, linear_look
-from mbs.budget.sources import (
+from mbs.budget import (
     DAMPING,
     FREQUENCY,
     HEIGHT,
     LINEAR,
+    LinearDifferences,
+    LinearLook,
+    LinearReference,
     Tried,
     differences_row,
+    linear_look,
     linear_row,
     model_choices,
     model_sources,
