@@ -39,8 +39,8 @@ from mbs.model.elements import Operation as Operation
 from mbs.model.elements import Sensor as Sensor
 from mbs.model.elements import Spring as Spring
 from mbs.model.profiles import SpeedProfile as SpeedProfile
-from mbs.planning.auto import automatic as automatic
 from mbs.planning.physics import AutoSettings as AutoSettings
+from mbs.planning.physics import automatic as automatic
 from mbs.planning.plan import PlanSettings as PlanSettings
 from mbs.planning.plan import plan as plan
 from mbs.scene.assembly import Model as Model

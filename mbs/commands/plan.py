@@ -19,9 +19,17 @@ from ehdmaps.outputs import SEALED, Output, output_problems, sealed, write_text
 from ehdmaps.units import LOAD, RPM, SPEED, TEMPERATURE, Display
 from mbs.commands.cases import read_dry, scene_output_problems
 from mbs.output.model_text import heading
-from mbs.planning import ranges
-from mbs.planning.plan import PlanResult, PlanSettings, held_films, plan
-from mbs.planning.ranges import Needed
+from mbs.planning.plan import (
+    ANGLES,
+    MARGIN,
+    MOST_MARGIN,
+    PHASES,
+    Needed,
+    PlanResult,
+    PlanSettings,
+    held_films,
+    plan,
+)
 from mbs.scene.assembly import assemble
 from mbs.scene.fields import MICROMETRE
 from mbs.scene.map_set import TABLE_LAW
@@ -48,7 +56,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines = [
         *heading(found.model),
         f"  turns at {RPM.text(slowest)} to {RPM.text(fastest)}; loads of contacts at rest, "
-        f"dry, over {ranges.ANGLES} cage angles of a pitch, times {settings.margin:g} for what moves",
+        f"dry, over {ANGLES} cage angles of a pitch, times {settings.margin:g} for what moves",
         *_turning(found),
     ]
     planned = _plan(found, arguments)
@@ -70,7 +78,7 @@ def _turning(found: PlanResult) -> list[str]:
     if not names:
         return []
     return [
-        f"  {names}: with their size at {RPM.text(found.speeds[1])}, standing still at {ranges.PHASES} angles, as a "
+        f"  {names}: with their size at {RPM.text(found.speeds[1])}, standing still at {PHASES} angles, as a "
         "stiff rotor bears them; near and above a critical speed loads are larger: see mbs critical, and --margin"
     ]
 
@@ -95,13 +103,13 @@ def _read(arguments: argparse.Namespace) -> tuple[Scene, PlanSettings]:
 def _margin(text: str | None, problems: list[str]) -> float:
     """Read --margin."""
     if text is None:
-        return ranges.MARGIN
+        return MARGIN
     try:
         value = float(text)
     except ValueError:
         value = math.nan
-    if not 1.0 <= value <= ranges.MOST_MARGIN:
-        problems.append(f"--margin: got {text!r:.40}; allowed: a number from 1 to {ranges.MOST_MARGIN:g}")
+    if not 1.0 <= value <= MOST_MARGIN:
+        problems.append(f"--margin: got {text!r:.40}; allowed: a number from 1 to {MOST_MARGIN:g}")
     return value
 
 

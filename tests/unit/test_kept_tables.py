@@ -12,8 +12,7 @@ import pytest
 import ehdmaps
 from ehdmaps.jobs.make import table_law
 from ehdmaps.maps.kernels import kept_tables
-from ehdmaps.maps.kernels.law_in_c import ABOVE_SPEED, LawAddress
-from ehdmaps.maps.kernels.tables import NOT_FINITE
+from ehdmaps.maps.kernels.law_in_c import ABOVE_SPEED, NOT_FINITE, LawAddress
 from ehdmaps.maps.law import ContactLaw
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD
 

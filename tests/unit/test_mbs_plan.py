@@ -14,14 +14,15 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.jobs.reader import parse_job
 from mbs.model.elements import Load
 from mbs.model.profiles import Course, Harmonic
-from mbs.planning.plan import plan, planned_job
-from mbs.planning.ranges import (
+from mbs.planning.plan import (
     LIGHT,
     LIGHTEST,
     film_room,
     largest_loads,
     needed_ranges,
     outward,
+    plan,
+    planned_job,
     same_contacts,
     speed_range,
 )

@@ -12,7 +12,8 @@ import pytest
 
 import ehdmaps
 from ehdmaps.jobs.solve.ball_points import read_point
-from ehdmaps.maps.points.layers import DAMPING, OFFSET, SHARES, load_shares, shared_films
+from ehdmaps.maps.points.layers import DAMPING, OFFSET
+from ehdmaps.maps.points.rough import SHARES, load_shares, shared_films
 from ehdmaps.maps.rough_layer import asperity_pressure, mean_gap
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import PLAIN, FilmConditions, OilSupply
