@@ -118,8 +118,7 @@ class Layout:
     @property
     def span(self) -> float:
         """s(exit) - s(inlet end): how many e-folds of distance the grid has to resolve."""
-        first, last = (_index(x, self.inlet_edge, self.blur, self.core, self.terms)[0] for x in (-self.length, 0.0))
-        return float(last - first)
+        return float(_span(self.length, self.inlet_edge, self.blur, self.core, self.terms))
 
     def with_moved_spike(self, shift: float) -> Layout:
         """The same with its spike, the last term, shifted towards the exit [b]."""
@@ -129,8 +128,7 @@ class Layout:
 
     def grid(self, cells: int) -> Grid:
         """Nodes at equal steps of s."""
-        x, step = _nodes(2 * cells, self.length, self.inlet_edge, self.blur, self.core, self.terms)
-        return Grid(x=x[::2].copy(), step=2.0 * step[::2], face=x[1::2].copy(), face_step=2.0 * step[1::2])
+        return Grid(*_cells(cells, self.length, self.inlet_edge, self.blur, self.core, self.terms))
 
 
 def lay_out(
@@ -232,6 +230,22 @@ def _nodes(
         step[i] = spacing / slope
         growth = step[i] / step[i + 1]
     return x, step
+
+
+@njit
+def _span(length: float, edge: float, blur: float, core: float, terms: FloatArray) -> float:
+    """s(exit) - s(inlet end)."""
+    last: float = _index(0.0, edge, blur, core, terms)[0]
+    return last - _index(-length, edge, blur, core, terms)[0]
+
+
+@njit
+def _cells(
+    cells: int, length: float, edge: float, blur: float, core: float, terms: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """The fields of `Grid`: nodes at even half steps, faces at odd ones."""
+    x, step = _nodes(2 * cells, length, edge, blur, core, terms)
+    return x[::2].copy(), 2.0 * step[::2], x[1::2].copy(), 2.0 * step[1::2]
 
 
 ZETA_PRIME_MINUS_TWO = -0.030448457058393270780

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ehdmaps.compiled import njit
 from ehdmaps.ehl.grid import zone_width
 from ehdmaps.ehl.limits import Resolution
 from ehdmaps.ehl.linearisation import GridShift, Linearisation, Neighbour, Response, linearised
@@ -140,7 +141,7 @@ def assembled(
     by_offset = SECOND if starved else THIRD if _plug(fine) else _offset_share(M, fine.spike is not None)
     by_response = SECOND if starved else max(response_share(M, L, fine.spike is not None), _sliding_share(fine))
     inlet = 0.0 if starved else 1.0 / resolution.inlet**2
-    central, minimum = fine.central_and_minimum_film
+    central, minimum = fine.measures[:2]
     # the coarse grid of a starved contact has the same part of its own flooded flow; films go with the layer
     scale = fine.mass_flow / coarse.mass_flow if starved else 1.0
     central_error, minimum_error = _film_errors(fine, coarse, scale, by_offset)
@@ -249,7 +250,7 @@ def _with_error_across(
         here, there = (float(np.max(each.warmth.rises[:, where])) for each in (profile, witness) if each.warmth)
         return float(getattr(solution, f"{name}_error")) + share * abs(here - there)
 
-    (central, minimum), (other_central, other_minimum) = (each.central_and_minimum_film for each in (profile, witness))
+    (central, minimum), (other_central, other_minimum) = (each.measures[:2] for each in (profile, witness))
     peak, other_peak = (float(np.max(each.pressure)) for each in (profile, witness))
     return replace(
         solution,
@@ -362,11 +363,14 @@ def _film_errors(fine: Profile, coarse: Profile, scale: float, share: float) -> 
     Behind a spike the smallest film follows the spike's place, which is found to first order, and it moves with the
     whole film, to second order.
     """
-    (central, minimum), (rough, rough_minimum) = fine.central_and_minimum_film, coarse.central_and_minimum_film
+    (central, minimum), (rough, rough_minimum) = fine.measures[:2], coarse.measures[:2]
     moved_by, narrowed = abs(scale * rough / central - 1.0), abs(scale * rough_minimum / minimum - 1.0)
     if fine.spike is None and not _unresolved(fine):
         return share * moved_by, share * narrowed
     return share * moved_by, FIRST_ORDER * narrowed + 0.5 * moved_by
+
+
+_peak_sampling_error = njit(peak_sampling_error)
 
 
 def _peak_error(fine: Profile, coarse: Profile) -> float:
@@ -377,11 +381,11 @@ def _peak_error(fine: Profile, coarse: Profile) -> float:
     may rise above its cell.
     """
     highest, spiked = float(np.max(fine.pressure)), fine.spike is not None
-    between = peak_sampling_error(fine.position, fine.pressure, spiked)
+    between = _peak_sampling_error(fine.position, fine.pressure, spiked)
     if spiked:
         apart = abs(float(np.max(coarse.pressure)) / highest - 1.0)
         return between + FIRST_ORDER * apart + max(tip_pressure(fine) / highest - 1.0, 0.0)
-    rough = float(np.max(coarse.pressure)) * (1.0 + peak_sampling_error(coarse.position, coarse.pressure, False))
+    rough = float(np.max(coarse.pressure)) * (1.0 + _peak_sampling_error(coarse.position, coarse.pressure, False))
     return 1.5 * between + 1.5 / 15.0 * abs(rough / highest - 1.0 - between)
 
 

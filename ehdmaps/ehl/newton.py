@@ -1,4 +1,7 @@
-"""Full Newton for the discrete contact: dense Jacobian, rows scaled, steps limited in ln eta, film kept positive."""
+"""Full Newton for the discrete contact: dense Jacobian, rows scaled, steps limited in ln eta, film kept positive.
+
+Steps of a Newtonian film that are small are followed by chords, which solve with the factors that are there already.
+"""
 
 from __future__ import annotations
 
@@ -46,6 +49,12 @@ more than the oil bears asks for flows of any size."""
 SOFT_ABOVE = 1e-4
 """Size of the last step above which the tangents of an oil that yields are soft, see `shear_factors`."""
 
+CHORD_BELOW = 1e-2
+"""Size of a full step below which the matrix behind it goes on to serve: by chords, a tenth of a Newton step each."""
+
+SHRINKING = 0.1
+"""Part of the step before that a chord may be at most; where chords shrink less, Newton goes on with a matrix anew."""
+
 CONVERGED, STAGNATED, DIVERGED = 0, 1, 2
 
 THICK_START = 0.3
@@ -58,7 +67,7 @@ H^(2/3) of the inlet zone, over which the pressure of a thin film rises."""
 
 
 class NewtonResult(NamedTuple):
-    """Unknowns, outcome (CONVERGED, STAGNATED or DIVERGED), Newton steps taken and size of the last step."""
+    """Unknowns, outcome (CONVERGED, STAGNATED or DIVERGED), Newton steps without chords, and size of the last step."""
 
     unknowns: FloatArray
     outcome: int
@@ -191,7 +200,8 @@ def newton(
     load : float
         Integral of the dimensionless pressure.
     tolerance : float
-        Bound of the last full step: pressure relative to its maximum, film and exit relative to film and exit.
+        Bound of the last full step: pressure relative to its maximum, film and exit relative to film and exit. What it
+        leaves is about its square, and chords go on until they leave less.
     most_steps : int
         Steps after which the point counts as stagnated.
     """
@@ -199,7 +209,7 @@ def newton(
     n = size - 2
     unknowns = lifted(x, kernel, start)
     out = np.empty(size)
-    jacobian = np.empty((size, size))
+    jacobian, scratch = np.empty((size, size)), np.empty((1, size))
     last, relaxation = math.inf, 1.0
     yields = problem.shear.form != NEWTONIAN
     old = np.zeros(n - 1)
@@ -210,7 +220,8 @@ def newton(
         lowest = residual_with(problem, factors, x, step, face_step, kernel, unknowns, load, out, jacobian)
         if not np.all(np.isfinite(out)):
             return NewtonResult(unknowns, DIVERGED, count, last)
-        move = solved(factorised(jacobian), -out)
+        matrix = factorised(jacobian)
+        move = solved(matrix, -out)
         last = step_size(unknowns, move)
         if not math.isfinite(last):
             return NewtonResult(unknowns, DIVERGED, count, last)
@@ -221,6 +232,20 @@ def newton(
         unknowns = unknowns + length * move
         if length == 1.0 and last < tolerance:
             return NewtonResult(unknowns, CONVERGED, count + 1, last)
+        if length < 1.0 or last > CHORD_BELOW or yields:
+            continue
+        before = last
+        while True:
+            residual_with(problem, factors, x, step, face_step, kernel, unknowns, load, out, scratch)
+            move = solved(matrix, -out)
+            chord = step_size(unknowns, move)
+            if not chord <= SHRINKING * before:
+                break
+            unknowns = unknowns + move
+            # what is left, if the next chords shrink as this one did
+            if chord * chord < tolerance * tolerance * before:
+                return NewtonResult(unknowns, CONVERGED, count + 1, chord)
+            before = chord
     return NewtonResult(unknowns, STAGNATED, most_steps, last)
 
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.ehl.grid import DRY_DATUM, Grid, Layout, Spike, moved_across
 from ehdmaps.ehl.reynolds import MOST_LOG_VISCOSITY, LineProblem, face_films, film, node_pressure, shear_factors
 from ehdmaps.ehl.warm_column import empty_columns, fill_columns
@@ -30,6 +33,23 @@ class Warmth:
 
     rises: FloatArray
     first: int
+
+
+class Measures(NamedTuple):
+    """Numbers that pressure and film at the nodes give, read in one call of compiled code.
+
+    Attributes
+    ----------
+    central, minimum : float
+        Film at X = 0 and smallest film, by parabolas through three nodes [b^2/R].
+    rise_integral, plain_integral : float
+        Int H dP by `film_times_rise`, and without its terms of fourth order [b^2/R p_H].
+    """
+
+    central: float
+    minimum: float
+    rise_integral: float
+    plain_integral: float
 
 
 @dataclass(frozen=True)
@@ -82,7 +102,7 @@ class Profile:
     @cached_property
     def rolling_force(self) -> float:
         """Int H dP, that of a flooded inlet before the grid included [b^2/R p_H]."""
-        inside = film_times_rise(self.film, self.pressure)
+        inside = self.measures.rise_integral
         if self.layout.starved:
             return inside
         before = rolling_force_of_inlet(
@@ -97,6 +117,8 @@ class Profile:
         faces = np.asarray(face_films(self.film))
         rise = 12.0 / problem.wedge * faces * (pressure[1:] - pressure[:-1]) / grid.face_step
         if problem.shear.form == NEWTONIAN and self.warmth is None:
+            if problem.slide == 0.0:
+                return np.zeros_like(faces), rise
             log_eta = log_viscosity(problem.isotherm, 0.5 * (pressure[1:] + pressure[:-1]))[0]
             return problem.slide * np.exp(np.minimum(log_eta, MOST_LOG_VISCOSITY)) / faces, rise
         if self.warmth is not None:
@@ -120,38 +142,62 @@ class Profile:
         return float(self.stresses[0] @ self.grid.face_step)
 
     @cached_property
-    def front_cell(self) -> int:
-        """The cell in which the pressure falls fastest behind its maximum."""
-        top = int(np.argmax(self.pressure))
-        pressure, x = self.pressure[top:], self.grid.x[top:]
-        return top + int(np.argmax((pressure[:-1] - pressure[1:]) / (x[1:] - x[:-1])))
+    def measures(self) -> Measures:
+        """Numbers that are read from pressure and film."""
+        return Measures(*_measured(self.pressure, self.position, self.film))
 
     @cached_property
-    def central_and_minimum_film(self) -> tuple[float, float]:
-        """Film at X = 0 and smallest film, by parabolas through three nodes."""
-        position, gap = self.position, self.film
-        last = gap.size - 2
-        centre = min(max(int(np.argmin(np.abs(position))), 1), last)
-        lowest = min(max(int(np.argmin(gap)), 1), last)
-        value, slope, curvature = _parabola(position, gap, centre)
-        away = -float(position[centre])
-        central = value + slope * away + 0.5 * curvature * away * away
-        value, slope, curvature = _parabola(position, gap, lowest)
-        return central, value - 0.5 * slope * slope / curvature if curvature > 0.0 else value
+    def front(self) -> tuple[int, float]:
+        """The cell in which the pressure falls fastest behind its maximum, and that fall [p_H/b]."""
+        cell, fall = _steepest(self.grid.x, self.pressure)
+        return cell, fall
+
+    @property
+    def front_cell(self) -> int:
+        """The cell in which the pressure falls fastest behind its maximum."""
+        return self.front[0]
 
     @property
     def fourth_order_share(self) -> float:
         """Change of the rolling force by the terms of fourth order, as a share of it."""
-        film, rise = self.film, self.pressure[1:] - self.pressure[:-1]
-        plain = float(0.5 * (film[1:] + film[:-1]) @ rise)
-        return abs(plain - film_times_rise(film, self.pressure)) / self.rolling_force
+        return abs(self.measures.plain_integral - self.measures.rise_integral) / self.rolling_force
+
+
+_film_times_rise = njit(film_times_rise)
+
+
+@njit
+def _steepest(x: FloatArray, pressure: FloatArray) -> tuple[int, float]:
+    """Cell of the fastest fall of pressure behind its maximum, and that fall."""
+    top = int(np.argmax(pressure))
+    cell, steepness = top, -np.inf
+    for i in range(top, x.size - 1):
+        fall = (pressure[i] - pressure[i + 1]) / (x[i + 1] - x[i])
+        if fall > steepness:
+            cell, steepness = i, fall
+    return cell, steepness
+
+
+@njit
+def _measured(pressure: FloatArray, position: FloatArray, gap: FloatArray) -> tuple[float, float, float, float]:
+    """The fields of `Measures`."""
+    last = gap.size - 2
+    plain = 0.0
+    for i in range(last + 1):
+        plain += 0.5 * (gap[i + 1] + gap[i]) * (pressure[i + 1] - pressure[i])
+    centre = min(max(int(np.argmin(np.abs(position))), 1), last)
+    value, slope, curvature = _parabola(position, gap, centre)
+    away = -position[centre]
+    central = value + slope * away + 0.5 * curvature * away * away
+    value, slope, curvature = _parabola(position, gap, min(max(int(np.argmin(gap)), 1), last))
+    minimum = value - 0.5 * slope * slope / curvature if curvature > 0.0 else value
+    return central, minimum, _film_times_rise(gap, pressure), plain
 
 
 def front(profile: Profile) -> tuple[float, float]:
     """Place where the pressure falls fastest behind its maximum, relative to the exit [b], and that slope [p_H/b]."""
-    pressure, x, cell = profile.pressure, profile.grid.x, profile.front_cell
-    fall = (pressure[cell] - pressure[cell + 1]) / (x[cell + 1] - x[cell])
-    return float(profile.grid.face[cell]), float(fall)
+    cell, fall = profile.front
+    return float(profile.grid.face[cell]), fall
 
 
 def front_node(profile: Profile) -> int:
@@ -162,12 +208,13 @@ def front_node(profile: Profile) -> int:
     return min(max(node, 1), pressure.size - 2)
 
 
+@njit
 def _parabola(x: FloatArray, y: FloatArray, i: int) -> tuple[float, float, float]:
     """Value, slope and second derivative at node i of the parabola through nodes i-1, i, i+1."""
     left, right = x[i] - x[i - 1], x[i + 1] - x[i]
     down, up = (y[i] - y[i - 1]) / left, (y[i + 1] - y[i]) / right
     curvature = 2.0 * (up - down) / (left + right)
-    return float(y[i]), float((down * right + up * left) / (left + right)), float(curvature)
+    return y[i], (down * right + up * left) / (left + right), curvature
 
 
 def warm_start(profile: Profile | None, grid: Grid, points: int) -> FloatArray:
@@ -204,14 +251,36 @@ def moved(profile: Profile, grid: Grid, by_index: bool) -> FloatArray:
     by_index : bool
         True: at the same share of the nodes; False: at the same places.
     """
-    exit_at = profile.unknowns[-2]
-    excess = profile.pressure - _hertz(profile.position)
     if by_index:
-        excess = np.interp(np.arange(grid.x.size) * (profile.cells / grid.face.size), np.arange(excess.size), excess)
+        place = np.arange(float(grid.x.size)) * (profile.cells / grid.face.size)
+        old = np.arange(profile.cells + 1.0)
     else:
-        excess = np.interp(grid.x, profile.grid.x, excess)
-    pressure = excess + _hertz(grid.x + exit_at)
-    return np.concatenate([np.maximum(pressure[1:-1], 0.0), profile.unknowns[-3:]])
+        place, old = grid.x, profile.grid.x
+    return np.asarray(_moved(profile.grid.x, profile.pressure, profile.unknowns, grid.x, place, old))
+
+
+@njit
+def _moved(
+    x: FloatArray, pressure: FloatArray, unknowns: FloatArray, new_x: FloatArray, place: FloatArray, old: FloatArray
+) -> FloatArray:
+    """Start at new nodes: what differs from the Hertz pressure at the old ones is interpolated over places of both."""
+    exit_at = unknowns[-2]
+    excess = np.empty(x.size)
+    for i in range(x.size):
+        excess[i] = pressure[i] - _hertz(x[i] + exit_at)
+    return _started(np.interp(place, old, excess), new_x, unknowns)
+
+
+@njit
+def _started(excess: FloatArray, x: FloatArray, unknowns: FloatArray) -> FloatArray:
+    """Unknowns of a start from what differs from the Hertz pressure at the nodes; the last three as they were."""
+    n = x.size - 1
+    start = np.empty(n + 2)
+    for i in range(1, n):
+        start[i - 1] = max(excess[i] + _hertz(x[i] + unknowns[-2]), 0.0)
+    for i in range(3):
+        start[n - 1 + i] = unknowns[unknowns.size - 3 + i]
+    return start
 
 
 def starved_start(profile: Profile, grid: Grid) -> FloatArray:
@@ -259,19 +328,27 @@ def _monotone(x: FloatArray, y: FloatArray, at: FloatArray) -> FloatArray:
 
 def refined(coarse: Profile, grid: Grid) -> FloatArray:
     """Start on the grid with twice the cells: old nodes stay, new ones by cubic interpolation in the index."""
-    exit_at = coarse.unknowns[-2]
-    old = coarse.pressure - _hertz(coarse.position)
-    new = np.empty(2 * old.size - 1)
-    new[::2] = old
-    middle = 0.5 * (old[1:] + old[:-1])
-    cubic = (9.0 * (old[1:-2] + old[2:-1]) - old[:-3] - old[3:]) / 16.0
-    low, high = np.minimum(old[1:-2], old[2:-1]), np.maximum(old[1:-2], old[2:-1])
-    middle[1:-1] = np.where((cubic > low) & (cubic < high), cubic, middle[1:-1])
-    new[1::2] = middle
-    pressure = new + _hertz(grid.x + exit_at)
-    return np.concatenate([np.maximum(pressure[1:-1], 0.0), coarse.unknowns[-3:]])
+    return np.asarray(_refined(coarse.grid.x, coarse.pressure, coarse.unknowns, grid.x))
 
 
-def _hertz(position: FloatArray) -> FloatArray:
+@njit
+def _refined(x: FloatArray, pressure: FloatArray, unknowns: FloatArray, new_x: FloatArray) -> FloatArray:
+    """The same in arrays."""
+    n, exit_at = x.size, unknowns[-2]
+    new = np.empty(2 * n - 1)
+    for i in range(n):
+        new[2 * i] = pressure[i] - _hertz(x[i] + exit_at)
+    for i in range(n - 1):
+        left, right = new[2 * i], new[2 * i + 2]
+        new[2 * i + 1] = 0.5 * (left + right)
+        if 0 < i < n - 2:
+            cubic = (9.0 * (left + right) - new[2 * i - 2] - new[2 * i + 4]) / 16.0
+            if min(left, right) < cubic < max(left, right):
+                new[2 * i + 1] = cubic
+    return _started(new, new_x, unknowns)
+
+
+@njit
+def _hertz(position: float) -> float:
     """Pressure of the dry contact."""
-    return np.sqrt(np.maximum(0.0, 1.0 - position * position))
+    return math.sqrt(max(0.0, 1.0 - position * position))

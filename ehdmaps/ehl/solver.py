@@ -220,10 +220,10 @@ class ReynoldsSolver(ContactSolverDefaults):
         return settings
 
     def _problem(
-        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint
+        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, known: LubricantState | None = None
     ) -> tuple[LineProblem, float, float]:
-        """Groups of one operating point, see `line_problem`."""
-        state, load, speed = lubricant.at(point.temperature), point.load, point.entrainment_speed
+        """Groups of one operating point, see `line_problem`; `known` is the oil there, where it is known already."""
+        state, load, speed = known or lubricant.at(point.temperature), point.load, point.entrainment_speed
         problem, M, L = line_problem(contact, state, load, speed, self.shear_law, self.slide_to_roll)
         if self.physics != THERMAL:
             return problem, M, L
@@ -388,7 +388,7 @@ class ReynoldsSolver(ContactSolverDefaults):
         if self.physics == THERMAL:
             reason = f"{supply.label}, {ratio:.3g} of the flooded flow: starved films are isothermal ones only"
             return SuppliedFilm(FilmSolution(Status.OUTSIDE_VALIDITY, reason), ratio)
-        _, M, L = self._problem(contact, lubricant, point)
+        _, M, L = self._problem(contact, lubricant, point, state)
         watch = stopwatch()
         starved = starved_groups(M, L, self.resolution, layer, flooded)
         seconds = film.solve_seconds + watch()
@@ -423,7 +423,7 @@ class ReynoldsSolver(ContactSolverDefaults):
         if speed == 0.0:
             return dry_film(peak, "no entrainment: dry contact"), None
         state = lubricant.at(point.temperature)
-        problem, M, L = self._problem(contact, lubricant, point)
+        problem, M, L = self._problem(contact, lubricant, point, state)
         beyond = _beyond_reach(peak, M, L)
         if beyond:
             return FilmSolution(Status.OUTSIDE_VALIDITY, beyond), None

@@ -97,7 +97,7 @@ def reynolds_start(
     return ReynoldsStart(
         x=profile.position * half,
         pressure=profile.pressure * peak,
-        central_film=profile.central_and_minimum_film[0] * half * half / contact.radius,
+        central_film=profile.measures.central * half * half / contact.radius,
         expected_film=profile.layout.film,
         spike_position=0.0 if spike is None else exit_at + spike.position,
         spike_width=0.0 if spike is None else spike.width,

@@ -319,7 +319,8 @@ def coarse_solution(
         Newton steps of all grids, and how the last of them ended.
     """
     density = min(resolution.density, SEARCH_DENSITY)
-    profile, total, outcome = _first(problem, M, L, replace(resolution, density=density), previous)
+    searched = resolution if density == resolution.density else replace(resolution, density=density)
+    profile, total, outcome = _first(problem, M, L, searched, previous)
     finer = resolution
     while profile is not None and density < resolution.density:
         growth = min(REFINEMENT, resolution.density / density)

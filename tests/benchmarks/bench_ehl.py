@@ -1,18 +1,25 @@
 """How fast the Reynolds solver is, beside the error it makes; and against plain ways to solve the same equations.
 
-Run: python -m tests.benchmarks.bench_ehl [--points N]
+Run: python -m tests.benchmarks.bench_ehl [--points N] [--beside TREE]
 
 One process, one thread. Points are drawn along load lines of the NU308 map, as a sweep solves them. Errors are against
 four times the default density of cells. The plain solvers get the same grid and the same start
 (the interpolated coarse solution), and solve the fine grid's equations only: no linear response, no coarse grid, no
-estimate.
+estimate. --beside TREE has the same lines solved in turn by another checkout of this project and by this one: ratio of
+processor times, and the largest difference of any number from the largest of its kind.
 """
 
 from __future__ import annotations
 
 import argparse
+import os
+import pickle
+import statistics
+import subprocess
+import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 from scipy.optimize import fsolve
@@ -184,11 +191,60 @@ def _best(run: Callable[[], object]) -> float:
     return min(times)
 
 
+def solve_in_turn(points: int) -> None:
+    """Solve the lines once for each line of the input: their processor time [s] and films, pickled, as answer."""
+    sample, solver = lines(points), ReynoldsSolver()
+    for _ in sys.stdin:
+        begun = time.process_time()
+        films = [film for line in sample for film in solver.solve_line(CONTACT, OIL, *line)]
+        seconds = time.process_time() - begun
+        numbers = [{k: v for k, v in vars(film).items() if isinstance(v, float)} for film in films]
+        pickle.dump((seconds, numbers), sys.stdout.buffer)
+        sys.stdout.buffer.flush()
+
+
+def beside(tree: Path, points: int, rounds: int = 8) -> None:
+    """Print how much longer another checkout takes for the same lines, and how far its numbers are."""
+    runs: list[subprocess.Popen[bytes]] = []
+    for place in (tree.resolve(), Path(__file__).parents[2]):
+        environment = os.environ | {"PYTHONPATH": str(place), "OPENBLAS_NUM_THREADS": "1"}
+        command = [sys.executable, "-P", __file__, "--points", str(points), "--in-turn"]
+        runs.append(subprocess.Popen(command, cwd=place, env=environment, stdin=-1, stdout=-1))
+
+    def asked(run: subprocess.Popen[bytes]) -> tuple[float, list[dict[str, float]]]:
+        assert run.stdin is not None and run.stdout is not None
+        run.stdin.write(b"\n")
+        run.stdin.flush()
+        answer: tuple[float, list[dict[str, float]]] = pickle.load(run.stdout)
+        return answer
+
+    (_, there), (_, here) = (asked(run) for run in runs)  # compiled
+    pairs = [tuple(asked(run)[0] for run in runs) for _ in range(rounds)]
+    for run in runs:
+        run.communicate()
+    ratio = statistics.median(one / other for one, other in pairs)
+    least = " s there, ".join(f"{min(times):.3f}" for times in zip(*pairs, strict=True))
+    print(f"processor time of {points} points: {least} s here; ratio {ratio:.2f}, median of {rounds} in turn")
+    for name in sorted(there[0].keys() - {"solve_seconds"}):
+        one, other = (np.array([film[name] for film in films]) for films in (there, here))
+        apart = np.nanmax(np.abs(one - other), initial=0.0) / (np.nanmax(np.abs(one), initial=0.0) or 1.0)
+        print(f"  {name:24s} {apart:8.1e} of the largest")
+
+
 def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--points", type=int, default=300)
-    sample = lines(parser.parse_args().points)
+    parser.add_argument("--beside", type=Path, metavar="TREE", help="another checkout, in turn with this one")
+    parser.add_argument("--in-turn", action="store_true", help=argparse.SUPPRESS)
+    arguments = parser.parse_args()
+    if arguments.in_turn:
+        solve_in_turn(arguments.points)
+        return
+    if arguments.beside is not None:
+        beside(arguments.beside, arguments.points)
+        return
+    sample = lines(arguments.points)
     ReynoldsSolver().solve_line(CONTACT, OIL, (1e3, 1e4, 1e5), 1.0, 313.15)  # compile
     print("ehdmaps.ehl.solver.ReynoldsSolver: film, k, c, error estimates; one core")
     print("density  points/s   error, median and 95 %: film offset     film compliance   k                 c")

@@ -18,9 +18,11 @@ import xarray as xr
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.cli import main
 from ehdmaps.jobs.executors import executor_problem, named_executor
+from mbs import identify, read_scene
 from mbs.analyses.case import side_by_side
 from mbs.cli import main as mbs
 from tests.cases.dask_cluster import cluster, kill
+from tests.cases.identify_twins import balls
 from tests.cases.jobs import SMALL
 
 FIELDS = ("stiffness", "damping", "central_film", "film_offset")
@@ -73,6 +75,19 @@ def test_processes_of_executorlib_make_the_same_map(job, tmp_path, capsys):
     for path, engine in zip(maps, ([], ["--executor", "executorlib:local"]), strict=True):
         assert main(["generate", str(job), "-o", str(path), "--workers", "1", *engine]) == 0
     same(*maps)
+
+
+@pytest.mark.slow  # the same
+def test_processes_of_executorlib_find_the_same_unknowns():
+    scene, lines = read_scene("electric_drive"), np.arange(40.0, 1800.0, 32.0)
+    measured = balls(angles=1).responses([6000.0], lines, np.random.default_rng(5))
+    with named_executor("executorlib:local", 2) as engine:
+        assert engine is not None
+        own, theirs = (
+            identify(scene, measured, ["drive.clearance"], cage_angles=1, workers=workers).dataset
+            for workers in (1, engine)
+        )
+    xr.testing.assert_equal(own, theirs)  # to the bit
 
 
 @pytest.mark.slow  # the same
