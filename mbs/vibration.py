@@ -22,7 +22,6 @@ import scipy
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from mbs.bearings.deviating.tables import named_orders
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.scene.assembly import assemble
@@ -188,7 +187,7 @@ def ring_vibration(
         signals.append(found.signals[found.time >= BEGINNING, 0])
     rate = 0.5 / STEP
     data: Any = getattr(model.system.elements[0].element, "deviation_data", None)
-    orders = {} if data is None else named_orders(data)
+    orders = {} if data is None else data.named_orders()
     return RingVibration(cases, np.array([band_levels(one, rate) for one in signals]), rate, np.array(signals), orders)
 
 

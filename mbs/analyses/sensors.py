@@ -141,7 +141,8 @@ def excited_orders(model: Model, turns: float) -> list[tuple[float, str]]:
     Notes
     -----
     Of unbalances and excitations, those of less than one period a turn of the system, or of less than 20 periods in
-    the run, are left out: the windows of all orders would have to be longer for them. Weight stands still, and has
+    the run, are left out: the windows of all orders would have to be longer for them. Bearings with deviations from
+    their form have that of the cage, too, in a run of 20 of its turns. Weight stands still, and has
     no order; how rollers pass under it is in theirs.
     """
     given = [
@@ -153,14 +154,13 @@ def excited_orders(model: Model, turns: float) -> list[tuple[float, str]]:
         for k in range(1, (one.harmonics if one.rank == highest_rank else 0) + 1):
             # Rounded, for bearings that differ in the last bit only.
             found.setdefault(round(k * round(one.order, 9), 9), []).append(name)
-    least = max(_LEAST_ORDER, _LEAST_PERIODS / turns) if turns > 0.0 else math.inf
+    fewest = _LEAST_PERIODS / turns if turns > 0.0 else math.inf
+    least = max(_LEAST_ORDER, fewest)
     for element in (entry.element for entry in model.system.elements if isinstance(entry.element, OnRings)):
         if element.deviation_data is None:
             continue
-        from mbs.bearings.deviating.tables import named_orders  # with what few machines have
-
-        for name, order in named_orders(element.deviation_data).items():
-            known = found.setdefault(round(order, 9), []) if order >= least else []
+        for name, order in element.deviation_data.named_orders().items():
+            known = found.setdefault(round(order, 9), []) if order >= fewest else []
             known[:] = [f"{element.name} {name}", *(one for one in known if one != element.name)]
     for load in model.system.turning:
         if abs(load.order) >= least:

@@ -30,6 +30,7 @@ from mbs.linearised.critical import (
     critical_speeds,
     order_responses,
     orders,
+    turning_orders,
     turning_places,
     with_critical,
 )
@@ -481,7 +482,9 @@ def critical_of(models: Sequence[Model], settings: SweepSettings | None = None) 
     found = [_swept(model, settings) for model in (models if speeds is None else settled(models, speeds.end))]
     swept = found[0].sweep.speeds
     besides = [speed for speed in settings.besides if swept[0] <= speed <= swept[-1]]
-    refined = np.unique(np.concatenate([besides, *(with_critical(entry.sweep.speeds, entry.found) for entry in found)]))
+    turning = turning_orders(models[0].system)
+    around = [with_critical(entry.sweep.speeds, entry.found, turning) for entry in found]
+    refined = np.unique(np.concatenate([besides, *around]))
     return [_responded(entry, refined) for entry in found]
 
 

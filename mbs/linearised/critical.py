@@ -9,7 +9,7 @@ their own frequency at each speed, with all of stiffness, damping, gyroscopic te
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -228,7 +228,22 @@ def order_responses(
 
 
 def orders(system: System) -> tuple[float, ...]:
-    """Orders for which speeds may be critical: those of the loads that turn, else the spins of the bodies.
+    """Orders for which speeds may be critical: of loads that turn, else spins of bodies; and of bearings that deviate.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    """
+    found = turning_orders(system)
+    for entry in system.elements:
+        if isinstance(entry.element, OnRings) and (data := entry.element.deviation_data) is not None:
+            found |= {round(order, 9) for order in data.named_orders().values()}
+    return tuple(sorted(found))
+
+
+def turning_orders(system: System) -> set[float]:
+    """Orders of the loads that turn, else the spins of the bodies.
 
     Parameters
     ----------
@@ -236,7 +251,7 @@ def orders(system: System) -> tuple[float, ...]:
         The system.
     """
     found = {abs(load.order) for load in system.turning} or {abs(body.spin) for body in system.bodies if body.spin}
-    return tuple(sorted(order for order in found if math.isfinite(order)))
+    return {order for order in found if math.isfinite(order)}
 
 
 def _orders(system: System) -> list[float]:
@@ -306,8 +321,8 @@ def responses_between(
     return tuple(responses)
 
 
-def with_critical(speeds: FloatArray, found: Sequence[CriticalSpeed]) -> FloatArray:
-    """The speeds and some around each critical one that is lightly damped, rising [rad/s].
+def with_critical(speeds: FloatArray, found: Sequence[CriticalSpeed], turning: Collection[float]) -> FloatArray:
+    """The speeds and each critical one that is lightly damped, with some around it for loads, rising [rad/s].
 
     Parameters
     ----------
@@ -315,11 +330,13 @@ def with_critical(speeds: FloatArray, found: Sequence[CriticalSpeed]) -> FloatAr
         Rising [rad/s].
     found : sequence of CriticalSpeed
         Critical speeds between them.
+    turning : collection of float
+        Orders of loads, whose responses are drawn over speed.
     """
     added = [
         entry.speed * (1.0 + min(entry.damping_ratio, _WIDEST) * part)
         for entry in found
-        for part in AROUND
+        for part in (AROUND if entry.order in turning else (0.0,))
         if entry.damping_ratio > _UNDAMPED
     ]
     inside = [speed for speed in added if speeds[0] < speed < speeds[-1]]

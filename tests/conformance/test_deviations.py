@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
 from mbs import assemble, parse_scene
+from mbs.analyses.sensors import excited_orders
+from mbs.linearised.critical import orders
 from mbs.linearised.excitation import lines_of
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
+from mbs.passes import passes_of
 from mbs.settings import Settings
 from mbs.transient.run import Options, run
 from tests.conformance.machines import KINDS
@@ -71,6 +76,22 @@ def test_small_approaches_are_felt_as_they_are(kind):
     element.deviate(None)
     # the tractions that hold gyroscopic moments are not symmetric; differences to some 1e-4
     np.testing.assert_allclose(found, wanted, atol=2e-3 * np.abs(wanted).max(axis=(0, 1)).max())
+
+
+@pytest.mark.parametrize("kind", ROLLING, ids=lambda kind: kind.name)
+def test_orders_of_the_bearings_are_drawn_and_searched(kind):
+    """Those of rolling without slip by the geometry: cage, passes of both rings, both contacts of an element."""
+    model = model_of(kind, "hertz:1.25e-5 s")
+    entry = model.system.elements[0].element
+    element = getattr(entry, "plain", entry)
+    geometry = (getattr(element, "bearing", None) or element.force).geometry
+    row = geometry.balls if hasattr(geometry, "balls") else geometry.rollers
+    cage, outer, inner, own = passes_of(geometry, row, element.inner_spin, element.outer_spin)
+    drawn = dict(excited_orders(model, math.inf))
+    for order, name in ((cage, "FTF"), (outer, "1 BPFO"), (inner, "1 BPFI"), (2.0 * own, "2 BSF")):
+        assert min(abs(one - order) for one in orders(model.system)) < 1e-8
+        # of two bearings that are alike either gives the name
+        assert any(abs(one - order) < 1e-8 and f" {name}" in words for one, words in drawn.items())
 
 
 @pytest.mark.parametrize("kind", ROLLING, ids=lambda kind: kind.name)

@@ -17,9 +17,9 @@ EXAMPLES = sorted((ROOT / "examples").glob("[0-9][0-9]_*.py"))
 LONGEST = 50
 
 
-def test_there_are_thirteen_and_the_page_names_them():
+def test_there_are_fourteen_and_the_page_names_them():
     page = (ROOT / "examples" / "README.md").read_text(encoding="utf-8")
-    assert [path.name[:2] for path in EXAMPLES] == [f"{number:02d}" for number in range(1, 14)]
+    assert [path.name[:2] for path in EXAMPLES] == [f"{number:02d}" for number in range(1, 15)]
     assert all(f"`{path.name}`" in page for path in EXAMPLES)
 
 

@@ -160,21 +160,22 @@ def test_other_rollers_are_at_the_cage_and_at_twice_their_own_speed():
 
 
 @pytest.mark.parametrize(
-    "machine",
+    ("machine", "law"),
     [
-        Machine("cylindrical", alike(NU), axial=False),
-        Machine("rollers as bodies", alike(FEW), axial=False),
-        Machine("deep groove", alike(BALL)),
-        Machine("self-aligning", alike(SPHERE)),
-        Machine("tapered", preloaded(TAPERED)),
+        (Machine("cylindrical", alike(NU), axial=False), "hertz:1.25e-5 s"),
+        (Machine("cylindrical, films", alike(NU), axial=False), "table"),
+        (Machine("rollers as bodies", alike(FEW), axial=False), "hertz:1.25e-5 s"),
+        (Machine("deep groove", alike(BALL)), "hertz:1.25e-5 s"),
+        (Machine("self-aligning", alike(SPHERE)), "hertz:1.25e-5 s"),
+        (Machine("tapered", preloaded(TAPERED)), "hertz:1.25e-5 s"),
     ],
-    ids=lambda machine: machine.name,
+    ids=lambda one: getattr(one, "name", ""),
 )
-def test_the_energy_that_deviations_bring_in_is_accounted_for(machine):
+def test_the_energy_that_deviations_bring_in_is_accounted_for(machine, law):
     """What an element takes and gives is what it stores, but for the steps: what is left goes with them."""
     left = []
     text = machine.text((200.0, -3000.0, 150.0)).replace("[[bearings]]\n", "[[bearings]]\n" + ENERGY)
-    model = assemble(parse_scene(text, "machine", "machine.toml"), "hertz:1.25e-5 s")
+    model = assemble(parse_scene(text, "machine", "machine.toml"), law)
     start = equilibrium(model.system, model.operation).displacement
     for step in (1e-5, 5e-6):
         done = run(

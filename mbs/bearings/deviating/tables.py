@@ -182,25 +182,18 @@ class DeviationData(Record):
         added: FloatArray = self.given("added")
         return added.copy()
 
-
-def named_orders(data: DeviationData) -> dict[str, float]:
-    """Orders at which a bearing with deviations excites, by their names: FTF, BSF, k BPFO, k BPFI, and a turn beside.
-
-    Parameters
-    ----------
-    data : DeviationData
-        The bearing.
-    """
-    cage, element = data.turns[0], data.turns[3]
-    places = data.given("places") / data.nodes * 2.0 * math.pi
-    count = np.unique(np.round(np.exp(1j * places), 9)).size
-    found = {"FTF": abs(cage), "2 BSF": 2.0 * abs(element)}
-    for name, ring in zip(("BPFI", "BPFO"), data.turns[1:3], strict=True):
-        for k in range(1, HARMONICS + 1):
-            passing = k * count * abs(cage - ring)
-            beside = {f"{k} {name} {way:+d}": passing + way * abs(ring) for way in (-1, 1) if ring}
-            found |= {f"{k} {name}": passing, **beside}
-    return {name: order for name, order in found.items() if order > 0.0}
+    def named_orders(self) -> dict[str, float]:
+        """Orders at which the bearing excites, by their names: FTF, BSF, k BPFO, k BPFI, and a turn beside."""
+        cage, element = self.turns[0], self.turns[3]
+        places = self.given("places") / self.nodes * 2.0 * math.pi
+        count = np.unique(np.round(np.exp(1j * places), 9)).size
+        found = {"FTF": abs(cage), "2 BSF": 2.0 * abs(element)}
+        for name, ring in zip(("BPFI", "BPFO"), self.turns[1:3], strict=True):
+            for k in range(1, HARMONICS + 1):
+                passing = k * count * abs(cage - ring)
+                beside = {f"{k} {name} {way:+d}": passing + way * abs(ring) for way in (-1, 1) if ring}
+                found |= {f"{k} {name}": passing, **beside}
+        return {name: order for name, order in found.items() if order > 0.0}
 
 
 @functools.cache
