@@ -75,6 +75,8 @@ def critical_table(found: CriticalResult, names: Sequence[str], banded: bool = F
         looked += (
             f" What lies in the margin above, up to {_rpm((1.0 + MOST_ASKED) * high)}, was not: let [sweep] reach it."
         )
+    if not found.model.system.turning:
+        looked += " No load that turns is stated: orders are the spins of the bodies."
     if not found.found:
         return tag("p", f"There is no critical speed. {looked}")
     rows, near = [], list[str]()

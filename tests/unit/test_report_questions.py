@@ -107,6 +107,9 @@ def test_critical_speeds_stand_beside_operation(model):
     for words in ("70 % below", "3.33 % below", "inside", "50 % above", "mode 1"):
         assert words in report.words
     assert "Too near to operation: 2900 rpm (two, order 1); 3000 rpm (three, order 1)." in report.words
+    assert "No load that turns is stated: orders are the spins of the bodies." in report.words
+    result.sweep.speeds = np.array([0.0, 350.0])  # operation is 314 rad/s, and API 617 may ask for 27 % above
+    assert "margin above, up to 3810 rpm, was not: let [sweep] reach it." in str(critical_table(result, [""] * 4))
 
 
 def test_a_disc_is_drawn_as_it_was_given(model):
