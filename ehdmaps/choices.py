@@ -12,8 +12,8 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from ehdmaps.errors import InputError
-from ehdmaps.units import FILM, closest, quantity_within, short
+from ehdmaps.errors import InputError, Problems
+from ehdmaps.units import FILM, Display, closest, quantity_between, quantity_within, short
 
 if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
@@ -75,26 +75,22 @@ class Choice(Generic[Subject]):
         default = f"; default: {self.default.format(file=file)}" if self.default else ""
         return (self.said + more + default).replace("%", "%%")
 
-    def values(self, texts: Iterable[str], problems: list[str]) -> list[Any]:
+    def values(self, texts: Iterable[str], problems: Problems) -> list[Any]:
         """Read all texts that were given; what is wrong, and what comes twice, is noted and left out.
 
         Parameters
         ----------
         texts : iterable of str
             What was given.
-        problems : list of str
+        problems : Problems
             Appended to.
         """
         values: list[Any] = []
         for text in texts:
-            try:
+            with problems.after(f"--{self.name}: "):
                 value = self.read(text)
-            except InputError as error:
-                problems += [f"--{self.name}: {problem}" for problem in error.problems]
-                continue
-            if value in values:
-                problems.append(f"--{self.name}: got {text!r:.60} twice; allowed: each once")
-            else:
+                if value in values:
+                    raise InputError(f"got {text!r:.60} twice; allowed: each once")
                 values.append(value)
         return values
 
@@ -315,3 +311,30 @@ def add_choices(
             action="append" if several else "store",
             help=choice.help(file, more(choice)),
         )
+
+
+def read_option(
+    option: str, text: str | None, unit: str, limits: tuple[float, float], display: Display, problems: Problems
+) -> float | None:
+    """Read a quantity of the command line within limits; None if absent or wrong, with the problem noted.
+
+    Parameters
+    ----------
+    option : str
+        Name of the option, such as "--highest".
+    text : str or None
+        What was given; None if it was left out.
+    unit : str
+        SI unit of the value.
+    limits : (float, float)
+        Smallest and largest value that is allowed, in SI.
+    display : Display
+        How messages show them.
+    problems : Problems
+        Appended to.
+    """
+    if text is None:
+        return None
+    with problems.after(f"{option}: "):
+        return quantity_between(text, unit, *limits, display)
+    return None

@@ -15,7 +15,7 @@ class EhdmapsError(Exception):
 
 
 class InputError(EhdmapsError):
-    """Input that cannot be used; carries every problem found, not only the first.
+    """Input that cannot be used; carries every problem found, each once, not only the first.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ class InputError(EhdmapsError):
     """
 
     def __init__(self, problems: Sequence[str] | str) -> None:
-        self.problems: tuple[str, ...] = (problems,) if isinstance(problems, str) else tuple(problems)
+        self.problems = (problems,) if isinstance(problems, str) else tuple(dict.fromkeys(problems))
         super().__init__("\n".join(self.problems))
 
 
@@ -59,15 +59,28 @@ class Problems(list[str]):
         before : str
             The start, such as "--oil: ".
         """
-        try:
+        with self, problems_after(before):
             yield
-        except InputError as error:
-            self += (f"{before}{problem}" for problem in error.problems)
 
     def check(self) -> None:
-        """Raise an `InputError` with all of them, each once, where there are any."""
+        """Raise an `InputError` with all of them, where there are any."""
         if self:
-            raise InputError(tuple(dict.fromkeys(self)))
+            raise InputError(self)
+
+
+@contextmanager
+def problems_after(before: str, behind: str = "") -> Iterator[None]:
+    """Tell in the problems of what fails in this context where they are.
+
+    Parameters
+    ----------
+    before, behind : str
+        What each begins and ends with, such as "shaft 'input', ".
+    """
+    try:
+        yield
+    except InputError as error:
+        raise InputError([f"{before}{problem}{behind}" for problem in error.problems]) from error
 
 
 class DependencyError(InputError):

@@ -152,6 +152,66 @@ def quantity_within(text: object, unit: str, low: float, high: float, wrong: str
     return value
 
 
+_ROUND_OFF = 1e-12
+"""Part of a limit by which a value of just its size may miss it, as 1e5 rpm do in rad/s."""
+
+
+def quantity_between(text: object, unit: str, low: float, high: float, display: Display) -> float:
+    """Read a number with its unit that has to lie within limits, which are shown where it does not.
+
+    Parameters
+    ----------
+    text : object
+        What was typed.
+    unit : str
+        SI unit of the result.
+    low, high : float
+        Smallest and largest value allowed, in SI.
+    display : Display
+        How the limits are shown.
+
+    Raises
+    ------
+    InputError
+        For a text that does not read, and a value beyond the limits.
+
+    Examples
+    --------
+    >>> quantity_between("1e5 rpm", "rad/s", 0.0, 1e5 * math.pi / 30.0, RPM) == 1e5 * math.pi / 30.0
+    True
+    """
+    value = quantity(text, unit)
+    if not low - _ROUND_OFF * abs(low) <= value <= high + _ROUND_OFF * abs(high):
+        limits = f"{display.text(low)} to {display.text(high)}"
+        raise InputError(f"got {short(text)}; allowed: {limits}; check value and unit")
+    return min(max(value, low), high)
+
+
+def whole_number(text: str, low: int, high: int) -> int:
+    """Read a whole number within limits.
+
+    Parameters
+    ----------
+    text : str
+        What was typed: digits alone.
+    low, high : int
+        Smallest and largest number allowed.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+
+    Examples
+    --------
+    >>> whole_number("12", 1, 20)
+    12
+    """
+    if text.isascii() and text.isdigit() and len(text) < 10 and low <= int(text) <= high:
+        return int(text)
+    raise InputError(f"got {short(text)}; allowed: a whole number from {low} to {high}")
+
+
 def _allowed(unit: str) -> str:
     """Say what a quantity of this unit looks like."""
     example = _EXAMPLES.get(unit)

@@ -26,7 +26,7 @@ linear              `linearised` (modes, responses, excitation by bearings); `mo
                     `identification` (unknowns of a machine from what is measured)
 in time             `transient` (method, runs in C); `spectral` (levels over speed and order); `timedata` (files)
 analyses            `analyses`: statics, modes, lsa, sweep, runup, campbell, hammer; `planning`: what a scene requires;
-                    `library`: what needs no model; `vibration`: a bearing on a test spindle
+                    `one_bearing`: one without a scene; `library`: what needs no model; `vibration`: on a test spindle
 laboratory          `laboratory`: tradeoff, variants, stability
 for people          `output` (datasets, figures), `report` (a page to send), `commands`, `cli`; `systems`: scenes
 ==================  ====================================================================================

@@ -13,6 +13,7 @@ Left out: shoulders of the rings (some 3 pF), cage, ribs, and how far open slice
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -22,15 +23,18 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.electrics.contact import ContactElectrics, electrics_of
 from ehdmaps.electrics.dielectric import FIELDS, USUAL_FIELD, VACUUM, Dielectric, under_pressure
 from ehdmaps.electrics.gaps import LINE_ERROR, line_integral, open_line, open_point, point_integral
+from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.point.ellipse import Ellipse
-from mbs.bearings.contact_report import BearingPoint
+from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry
+from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from mbs.bearings.films import FormulaFilms
 
 if TYPE_CHECKING:
+    from mbs.bearings.contact_report import BearingPoint
     from mbs.bearings.tapered.tapered_point import TaperedPoint
 
 LEAST_GAP = 1e-8
@@ -118,9 +122,7 @@ def bearing_electrics(point: Any, lubricant: Lubricant, temperature: float, oil:
     none = BearingElectrics(nan, nan, nan, nan, nan, nan, nan)
     if point.failed or not point.entrainment_speed > 0.0:
         return none
-    of_side: Any = _rollers
-    if not isinstance(point, BearingPoint):
-        of_side = _balls if isinstance(point.geometry, BallGeometry) else _between_ribs
+    of_side = _SIDES[type(point.geometry)]
     sides = [of_side(point, side, _State(lubricant, temperature, oil)) for side in (0, 1)]
     if not all(np.any(side.loaded) for side in sides):
         return none
@@ -204,6 +206,15 @@ def _between_ribs(point: TaperedPoint, side: int, state: _State) -> Side:
     films = FormulaFilms(contacts, state.lubricant).state(side, load, point.entrainment_speed, state.temperature)
     gap = _gaps(np.zeros(load.shape), films.central_film)
     return _lines(contacts[side], load, films, gap, force.geometry.roller_length / load.shape[1], state)
+
+
+_SIDES: dict[type, Callable[[Any, int, _State], Side]] = {
+    BearingGeometry: _rollers,
+    BallGeometry: _balls,
+    TaperedGeometry: _between_ribs,
+    RibbedGeometry: _between_ribs,
+}
+"""Contacts with a raceway by the geometry of a bearing."""
 
 
 def _gaps(approach: FloatArray, films: FloatArray) -> FloatArray:

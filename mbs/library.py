@@ -124,7 +124,7 @@ def bearing(
     (6, 6)
     """
     from mbs.commands.bearing import family_of
-    from mbs.commands.one_bearing.request import points_of, read_request
+    from mbs.one_bearing.request import points_of, read_request
 
     given = dict(choices or {})
     arguments = argparse.Namespace(

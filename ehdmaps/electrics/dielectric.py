@@ -23,7 +23,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import Problems
 from ehdmaps.physics.lubricant import Lubricant
 
 VACUUM = 8.8541878128e-12
@@ -85,7 +85,7 @@ class Dielectric:
     outer_gap: float | None = None
 
     def __post_init__(self) -> None:
-        problems = []
+        problems = Problems()
         if not 1.0 < self.permittivity <= LARGEST:
             problems.append(
                 f"permittivity: got {self.permittivity!r}; allowed: above 1, at most {LARGEST:g}, of an oil"
@@ -97,8 +97,7 @@ class Dielectric:
             problems.append(f"outlet: got {self.outlet!r:.40}; allowed: {', '.join(OUTLETS)}")
         if self.outer_gap is not None and not 0.0 < self.outer_gap <= 1.0:
             problems.append(f"outer gap: got {self.outer_gap!r} m; allowed: above 0, at most 1 m")
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     def at(self, lubricant: Lubricant, temperature: float) -> float:
         """Permittivity at a temperature [K], without pressure.

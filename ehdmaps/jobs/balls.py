@@ -10,7 +10,7 @@ import os
 from collections.abc import Mapping
 from typing import Any
 
-from ehdmaps.errors import InputError, short
+from ehdmaps.errors import InputError, Problems, short
 from ehdmaps.inputs import read_text
 from ehdmaps.jobs import table
 from ehdmaps.jobs.table import Table, inline
@@ -59,10 +59,9 @@ def balls_of(text: str) -> BallGeometry | None:
         values: Any = table.parse(read_text(text, _LONGEST, "a TOML file with [bearing]"), text).get("bearing")
         where = f"{text}: [bearing]"
     elif text.lstrip().startswith("{"):
-        problems: list[str] = []
+        problems = Problems()
         values, where = inline(text, "BEARING", problems), "BEARING"
-        if problems:
-            raise InputError(problems)
+        problems.check()
     else:
         return ball_estimate(text) if plain_name(text, BALLS) else None
     if not says_balls(values):
@@ -100,11 +99,7 @@ def read_balls(section: Table) -> BallGeometry | None:
     name = section.get("name")
     base = None
     if isinstance(name, str) and plain_name(name, BALLS):
-        try:
-            base = ball_estimate(name)
-        except InputError as error:
-            for problem in error.problems:
-                section.note("name", problem)
+        base = section.made(lambda: ball_estimate(name), "name")
     elif "name" in section and not isinstance(name, str):
         section.note("name", f"got {short(name)}; allowed: a designation, or any name in quotes")
     lacking = base is None
@@ -129,7 +124,8 @@ def read_balls(section: Table) -> BallGeometry | None:
     known = {key: value for key, value in values.items() if value is not None}
     if len(section.problems) > before:
         return None
-    try:
+
+    def made() -> BallGeometry:
         if base is None:
             text = name if isinstance(name, str) else f"{known['balls']} balls of {1e3 * known['ball_diameter']:g} mm"
             geometry = BallGeometry(text, **{"contact_angle": 0.0, "clearance": 0.0, **known})
@@ -140,10 +136,8 @@ def read_balls(section: Table) -> BallGeometry | None:
 
             geometry = preloaded(geometry, preload)
         return geometry if clearance is None else geometry.with_clearance(clearance)
-    except InputError as error:
-        for problem in error.problems:
-            section.note("", problem)
-        return None
+
+    return section.made(made)
 
 
 def _groove(

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any, TypeVar, cast
+from typing import Any, cast
 
 from ehdmaps.errors import InputError, label_problem
 from ehdmaps.jobs.solids import NO_SOLIDS, SolidsKeys, fe_approaches
@@ -170,8 +169,6 @@ def _listed(entries: list[object], grid: Table, rule: AxisRule) -> tuple[float, 
     return tuple(known)
 
 
-Built = TypeVar("Built")
-
 _BEARING_LENGTHS = ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length")
 _ROLLER_KEYS = (*_BEARING_LENGTHS, "rollers", "row_distance")
 _BEARING_KEYS = (*_ROLLER_KEYS, "diametral_clearance")
@@ -272,8 +269,7 @@ def _material(section: Table) -> Material | None:
     conductivity = section.quantity("conductivity", "W/(m K)", 0.1, 1e4, _CONDUCTIVITY)
     capacity = section.quantity("heat_capacity", "J/(kg K)", 10.0, 1e4, _HEAT_CAPACITY)
     section.close()
-    return _built(
-        section,
+    return section.made(
         lambda: Material(
             STEEL.youngs_modulus if modulus is None else modulus,
             STEEL.poisson_ratio if ratio is None else ratio,
@@ -300,7 +296,7 @@ def _bearing(section: Table) -> BearingGeometry | None:
                 section.note(key, "stands beside name; allowed: a name, or dimensions without a name; delete one")
         section.close(others=("estimate", *_BEARING_KEYS))
         named = replace(known, label=label)
-        return named if clearance is None else _built(section, lambda: named.with_clearance(clearance))
+        return named if clearance is None else section.made(lambda: named.with_clearance(clearance))
     if not any(key in section for key in _BEARING_KEYS):
         section.note(
             "name", f"missing; allowed: a designation such as 'NU206'; or give {', '.join(_BEARING_KEYS)}, or estimate"
@@ -319,8 +315,7 @@ def _bearing(section: Table) -> BearingGeometry | None:
         return None
     roller = f"{diameter * 1e3:g} x {length * 1e3:g} mm"
     name = f"bearing {inner * 1e3:g}/{outer * 1e3:g} mm, {rollers} rollers {roller}"
-    return _built(
-        section,
+    return section.made(
         lambda: BearingGeometry(name, inner, outer, diameter, length, rollers, play, label, row_distance=apart),
     )
 
@@ -330,7 +325,7 @@ def _known(section: Table) -> BearingGeometry | None:
     name = section.get("name")
     if not isinstance(name, str) or plain_name(name, ROLLERS) not in BEARINGS:
         return None
-    return _built(section, lambda: designated(name), "name") or BEARINGS[plain_name(name, ROLLERS)]
+    return section.made(lambda: designated(name), "name") or BEARINGS[plain_name(name, ROLLERS)]
 
 
 def _estimate(section: Table, word: str, label: str | None) -> BearingGeometry | None:
@@ -357,9 +352,9 @@ def _estimate(section: Table, word: str, label: str | None) -> BearingGeometry |
         bore, outside, width = sizes
         if bore is None or outside is None or width is None or rating is None:
             return None
-        made = _built(section, lambda: estimate_from_dimensions(bore, outside, width, rating))
+        made = section.made(lambda: estimate_from_dimensions(bore, outside, width, rating))
     elif isinstance(value, str):
-        made = _built(section, lambda: estimate(value, rating), word)
+        made = section.made(lambda: estimate(value, rating), word)
         if rating is None and "basic_static_rating" in section:
             return None
     else:
@@ -369,7 +364,7 @@ def _estimate(section: Table, word: str, label: str | None) -> BearingGeometry |
     if made is None or (clearance is None and "diametral_clearance" in section):
         return None
     estimated = replace(made, label=label)
-    return estimated if clearance is None else _built(section, lambda: estimated.with_clearance(clearance))
+    return estimated if clearance is None else section.made(lambda: estimated.with_clearance(clearance))
 
 
 def _label(section: Table) -> str | None:
@@ -399,7 +394,7 @@ def _contact(
     given_wrong = ("reference_depth" in section and depth is None) or ("roller_length" in section and length is None)
     if radius is None or given_wrong or not law_known:
         return None
-    return _built(section, lambda: LineContact("line", radius, material, law, length, depth, fe_approach))
+    return section.made(lambda: LineContact("line", radius, material, law, length, depth, fe_approach))
 
 
 def read_lubricant(section: Table) -> Lubricant | None:
@@ -423,7 +418,7 @@ def read_lubricant(section: Table) -> Lubricant | None:
         if not isinstance(name, str):
             section.note("name", f"got {short(name)}; allowed: the name of an oil, such as 'FVA3' or 'ISO VG 46'")
             return None
-        return _built(section, lambda: replace(Lubricant.named(name), label=label, **heat))
+        return section.made(lambda: replace(Lubricant.named(name), label=label, **heat))
     law = section.choice("viscosity_law", tuple(PRESSURE_LAWS), required=True)
     values: dict[str, Any] = {
         key: section.quantity(key, *rule, required=key == "density") for key, rule in _OIL_QUANTITIES.items()
@@ -443,7 +438,7 @@ def read_lubricant(section: Table) -> Lubricant | None:
         return None
     given = {key: value for key, value in values.items() if value is not None}
     stated = {_LAW_PARAMETERS[key].field: value for key, value in numbers.items() if value is not None}
-    return _built(section, lambda: replace(Lubricant.own(law, stated, **given, **heat), label=label))
+    return section.made(lambda: replace(Lubricant.own(law, stated, **given, **heat), label=label))
 
 
 def _law_parameter(section: Table, parameter: Parameter, law: str | None) -> float | None:
@@ -482,15 +477,3 @@ def _pressure_viscosity(section: Table) -> float | str | None:
         )
         return None
     return section.quantity_of(text, "pressure_viscosity", "1/Pa", 1e-10, 1e-7, _COEFFICIENT)
-
-
-def _built(section: Table, make: Callable[[], Built], key: str = "") -> Built | None:
-    """Make a value of the physics; note its problems under the table's name, and under a key that it is made of."""
-    try:
-        return make()
-    except InputError as error:
-        for problem in error.problems:
-            section.note(key, problem)
-    except (ValueError, OverflowError, ZeroDivisionError) as error:
-        section.note("", f"its values together give no usable {section.where} ({error}); check their units")
-    return None

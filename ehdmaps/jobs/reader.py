@@ -356,11 +356,7 @@ def _check_heat(
             f"got {dearer!r} for films that are {own}; contacts of a bearing share what they are corrected by, and "
             "heat is not theirs in common; allowed: the same physics in [solver], or a bare [contact]",
         )
-    try:
-        heat_data(oil, contacts[0].material)
-    except InputError as error:
-        for problem in error.problems:
-            top.note("[lubricant]", problem)
+    top.made(lambda: heat_data(oil, contacts[0].material), "[lubricant]")
 
 
 def _check_temperatures(oil: Lubricant, temperatures: tuple[float, ...], grid: Table) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, problems_after
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
 from ehdmaps.physics.bearing import BearingGeometry
@@ -128,10 +128,8 @@ def fe_approaches(keys: SolidsKeys, bearing: BearingGeometry, material: Material
             f"{where}: got 'fe' with {', '.join(keys.sections)} of [solids], but without {' and '.join(_OF_BEARING)}; "
             f"allowed: with both; {_ADVICE}"
         )
-    try:
+    with problems_after(f"{where}: "):
         return bearing.fe_approaches(material)
-    except InputError as error:
-        raise InputError([f"{where}: {problem}" for problem in error.problems]) from error
 
 
 def job_sections(keys: SolidsKeys, bearing: BearingGeometry, material: Material) -> Sections:

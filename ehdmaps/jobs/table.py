@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
 from ehdmaps.errors import InputError
-from ehdmaps.units import Display, closest, quantity, short
+from ehdmaps.units import Display, closest, quantity_between, short
 
 DEEPEST = 64
 """Parts of a dotted key: the time to read one goes with their square, and no table of ours is deeper than five."""
@@ -163,6 +163,27 @@ class Table:
         (close or Table.close)(section)
         return value
 
+    def made(self, make: Callable[[], _Read], key: str = "", said: str = "") -> _Read | None:
+        """Make a value of what was read; None where it cannot be, which is noted.
+
+        Parameters
+        ----------
+        make : callable
+            What makes it.
+        key : str
+            Key that it is made of; the whole table if left out.
+        said : str
+            End of what the key says already of a problem: its words up to there are left out.
+        """
+        try:
+            return make()
+        except InputError as error:
+            for problem in error.problems:
+                self.note(key, (problem.partition(said)[2] if said else "") or problem)
+        except (ValueError, OverflowError, ZeroDivisionError) as error:
+            self.note("", f"its values together give no usable {self.where} ({error}); check their units")
+        return None
+
     def quantity(
         self, key: str, unit: str, low: float, high: float, display: Display, *, required: bool = False
     ) -> float | None:
@@ -207,18 +228,7 @@ class Table:
         display : Display
             How messages show the limits.
         """
-        try:
-            value = quantity(text, unit)
-        except InputError as error:
-            self.note(key, error.problems[0])
-            return None
-        if not low <= value <= high:
-            self.note(
-                key,
-                f"got {short(text)}; allowed: {display.text(low)} to {display.text(high)}; check value and unit",
-            )
-            return None
-        return value
+        return self.made(lambda: quantity_between(text, unit, low, high, display), key)
 
     def number(self, key: str, low: float, high: float, *, required: bool = False) -> float | None:
         """Return a bare number within [low, high].

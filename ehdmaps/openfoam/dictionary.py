@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, problems_after
 from ehdmaps.physics.lubricant import LubricantState
 
 HEADER = """FoamFile
@@ -257,10 +257,8 @@ def oil_numbers(oil: LubricantState) -> dict[str, float]:
     InputError
         If its law is none of `ehlFoam`.
     """
-    try:
+    with problems_after("ehlProperties, "):
         numbers = oil.pressure_viscosity.case_numbers()
-    except InputError as error:
-        raise InputError([f"ehlProperties, {problem}" for problem in error.problems]) from None
     return {"viscosity": oil.viscosity} | {camel(key): value for key, value in numbers.items()}
 
 

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, Unpack
 
-from ehdmaps.errors import InputError, Problems, closest, label_problem, short
+from ehdmaps.errors import InputError, Problems, closest, label_problem, problems_after, short
 from ehdmaps.physics.designations.oil_class import CLASSES, CONDUCTIVITY, DENSITY, DENSITY_SLOPE, OilClass
 from ehdmaps.physics.isotherm import FreeVolume, LubricantState, PressureViscosity
 from ehdmaps.physics.own_oil import (
@@ -433,11 +433,9 @@ class Lubricant:
                 f"{where}, temperature: got {temperature - ZERO_CELSIUS:.6g} degC, where its density is "
                 f"{density:.6g} kg/m3; allowed: temperatures with a density > 0; check density_slope"
             )
-        try:
+        with problems_after(f"{where}, "):
             viscosity = self.viscosity.at(temperature, density)
             isotherm = self._isotherms(temperature, viscosity, density).at(temperature, viscosity)
-        except InputError as error:
-            raise InputError([f"{where}, {problem}" for problem in error.problems]) from None
         return LubricantState(
             temperature=temperature,
             viscosity=viscosity,

@@ -13,7 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, Required, TypedDict
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, problems_after
 from ehdmaps.physics.designations.oil_class import DENSITY_SLOPE
 from ehdmaps.physics.viscosity import (
     PRESSURE_LAWS,
@@ -481,12 +481,8 @@ def _estimated_pair(name: str, correlation: str, oil: OilOverTemperature) -> tup
     """Alpha at 40 and 100 degC by a correlation."""
     values = []
     for celsius in (40.0, 100.0):
-        try:
+        with problems_after(f"lubricant {name!r}, ", f" (at {celsius:g} degC)"):
             values.append(oil.estimate(correlation, ZERO_CELSIUS + celsius))
-        except InputError as error:
-            raise InputError(
-                [f"lubricant {name!r}, {problem} (at {celsius:g} degC)" for problem in error.problems]
-            ) from None
     return values[0], values[1]
 
 

@@ -368,7 +368,7 @@ def campbell(
             "alone, or compare two laws at equal speeds with `mbs variants`"
         )
     if problems or course is None:
-        raise InputError(tuple(dict.fromkeys(problems)))
+        raise InputError(problems)
     orders = followed_orders(cases[0].model, settings, course)
     cases = tuple(dataclasses.replace(case, model=held(case.model)) for case in cases)
     rehearsed(settings, course, orders)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.errors import AnalysisError, Problems
 from mbs.analyses.case import Case, Failed, Progress, Workers, side_by_side, silent
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating
@@ -298,9 +298,7 @@ class _Prepared(NamedTuple):
 def _prepare(model: Model, settings: HammerSettings) -> _Prepared:
     """Equilibrium, modes and test of a model."""
     scene = model.scene
-    missing = hammer_problems(scene)
-    if missing:
-        raise InputError(missing)
+    Problems(hammer_problems(scene)).check()
     model = operating(model, model.operation.speed)
     balance = equilibrium(steady_system(model.system), model.operation)
     found = modes(balance)

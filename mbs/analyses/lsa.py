@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from ehdmaps.arrays import ComplexArray, FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import Problems
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating, settled, states_of
 from mbs.analyses.soundness import findings_at_rest, lift_off, with_findings
@@ -242,9 +242,7 @@ def _linearised(model: Model, settings: LsaSettings) -> _Linearised:
     """Linearise one model."""
     scene = model.scene
     asked = scene.frequencies if settings.frequencies is None else settings.frequencies
-    missing = lsa_problems(dataclasses.replace(scene, frequencies=tuple(asked)))
-    if missing:
-        raise InputError(missing)
+    Problems(lsa_problems(dataclasses.replace(scene, frequencies=tuple(asked)))).check()
     check_cage_angles("lsa", settings.cage_angles)
     operation = settings.operation or model.operation
     model = operating(model, operation.speed)

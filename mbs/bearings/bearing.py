@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.hertz import LINE_LIMIT
 from ehdmaps.physics.solids import STEEL, Material
@@ -262,7 +262,7 @@ class RingState:
     angular_velocity: FloatArray
 
     def __post_init__(self) -> None:
-        problems = []
+        problems = Problems()
         for name, shape in (("position", (3,)), ("rotation", (3, 3)), ("velocity", (3,)), ("angular_velocity", (3,))):
             try:
                 values = np.ascontiguousarray(getattr(self, name), dtype=np.float64)
@@ -279,8 +279,7 @@ class RingState:
                     f"ring, rotation: got a matrix that is {error:.3g} from a rotation; allowed: orthonormal within "
                     f"{_ROTATION_ERROR}, right-handed; normalise it"
                 )
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     @classmethod
     def at_rest(cls, position: npt.ArrayLike = (0.0, 0.0, 0.0), rotation: npt.ArrayLike | None = None) -> RingState:

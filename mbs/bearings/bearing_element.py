@@ -349,9 +349,14 @@ class BearingElement(RingElement):
         return (Port(self.inner, self.outer),)
 
     @property
+    def count(self) -> int:
+        """See `OnRings.count`."""
+        return self.bearing.geometry.rollers
+
+    @property
     def excitation(self) -> Excitation | None:
         """The passing of the rollers; None for a cage that stands."""
-        order = self.bearing.geometry.rollers * abs(self.rates[0])
+        order = self.count * abs(self.rates[0])
         return Excitation(order, HARMONICS, rank=1) if order > 0.0 else None
 
     @property
@@ -412,7 +417,7 @@ class BearingElement(RingElement):
 
     def passed(self, part: float) -> Self:
         """See `OnRings.passed`."""
-        turn = 2.0 * math.pi * part / self.bearing.geometry.rollers
+        turn = 2.0 * math.pi * part / self.count
         return dataclasses.replace(self, start_angle=self.start_angle + turn * float(np.sign(self.rates[0])))
 
     def cage_angle(self, operation: Operation) -> float:

@@ -23,7 +23,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.maps.kernels.tables import LOAD_TOLERANCE
 from mbs.bearings.bearing import Bearing, RingForces, RingState, ring_forces
 from mbs.bearings.cylinder import NOT_FINITE, Arrays
@@ -438,11 +438,10 @@ class BearingForce:
 
 def _check_law(law: Law, bearing: Bearing, outside: str | None) -> None:
     """Refuse a law that does not belong to the bearing."""
-    problems = law_problems("bearing force, law", law, bearing, "series")
+    problems = Problems(law_problems("bearing force, law", law, bearing, "series"))
     if outside is not None and not (problems or isinstance(law, DryLaw)) and outside != law.outside:
         problems.append(
             f"bearing force, outside: got {outside!r} with a law made with {law.outside!r}; allowed: what the law has; "
             f"make it by emap.law('series', outside={outside!r})"
         )
-    if problems:
-        raise InputError(problems)
+    problems.check()

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import AnalysisError, InputError, OutsideMapError
+from ehdmaps.errors import AnalysisError, InputError, OutsideMapError, Problems
 from ehdmaps.maps.kernels.tables import POWER_LAW
 from mbs.bearings import cylinder as table
 from mbs.bearings.bearing import Bearing
@@ -403,7 +403,7 @@ def check_conditions(conditions: tuple[float, float, float]) -> tuple[float, flo
     InputError
         With every problem.
     """
-    problems = []
+    problems = Problems()
     for name, value in zip(("entrainment_speed", "temperature", "centrifugal_load"), conditions, strict=True):
         try:
             finite = math.isfinite(value)
@@ -412,8 +412,7 @@ def check_conditions(conditions: tuple[float, float, float]) -> tuple[float, flo
             continue
         if not finite:
             problems.append(f"bearing force, {name}: got {value!r}; the law of a map needs a finite number; give it")
-    if problems:
-        raise InputError(problems)
+    problems.check()
     u, T, q = conditions
     return float(u), float(T), float(q)
 

@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError, SolverError
+from ehdmaps.errors import InputError, Problems, SolverError
 from ehdmaps.kernel.record import at
 from ehdmaps.physics.approach import ISO_LINE_CONSTANT, STEEL_REDUCED_MODULUS, StructuralLaw
 from ehdmaps.physics.contact import LineContact
@@ -147,7 +147,7 @@ class PowerLaw(DryLaw):
     damping_time: float = 0.0
 
     def __post_init__(self) -> None:
-        problems = []
+        problems = Problems()
         limits = (("coefficient", "N/m^exponent", False), ("damping", "N s/m", True), ("damping_time", "s", True))
         for key, unit, zero in limits:
             value = getattr(self, key)
@@ -157,8 +157,7 @@ class PowerLaw(DryLaw):
                 )
         if not 1.0 <= self.exponent <= 3.0:
             problems.append(f"law {self.name!r}, exponent: got {self.exponent!r}; allowed: 1 to 3")
-        if problems:
-            raise InputError(problems)
+        problems.check()
 
     def single(self) -> PowerLaw:
         """Law of one of the two contacts of the roller, which takes half of the approach at the same load."""
@@ -341,13 +340,12 @@ def formula(
     from ehdmaps.maps.law import ContactLaw
     from ehdmaps.physics.closed_form import FormulaSolver
 
-    problems = [
+    problems = Problems(
         f"law 'formula', {name}: got {given!r}; allowed: (lowest, highest), finite, 0 < lowest < highest"
         for name, given in (("load", load), ("entrainment_speed", entrainment_speed), ("temperature", temperature))
         if not (len(given) == 2 and 0.0 < given[0] < given[1] < math.inf)
-    ]
-    if problems:
-        raise InputError(problems)
+    )
+    problems.check()
     contacts = bearing.geometry.contacts(bearing.material, structural_law)
     chosen = tuple(contact for contact in contacts if kind in ("series", contact.name))
     if not chosen:

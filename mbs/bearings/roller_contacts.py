@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError, OutsideMapError, SolverError
+from ehdmaps.errors import InputError, OutsideMapError, Problems, SolverError
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import AT_REST
 from mbs.bearings.force_at_point import real_numbers
@@ -62,10 +62,9 @@ class RollerContacts:
 
     def __init__(self, bearing: Bearing, inner: Law, outer: Law) -> None:
         where = "roller contacts, law of the {} contact"
-        problems = law_problems(where.format("inner"), inner, bearing, "inner")
+        problems = Problems(law_problems(where.format("inner"), inner, bearing, "inner"))
         problems += law_problems(where.format("outer"), outer, bearing, "outer")
-        if problems:
-            raise InputError(problems)
+        problems.check()
         self.bearing = bearing
         self.laws = (inner, outer)
         self.flat_laws = (FlatLaw(inner), FlatLaw(outer))

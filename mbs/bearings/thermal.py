@@ -48,7 +48,7 @@ from typing import TypeVar
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.errors import AnalysisError, InputError, Problems
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.units import LENGTH, TEMPERATURE
@@ -383,15 +383,13 @@ class HeatPaths:
     palmgren: float | None = None
 
     def __post_init__(self) -> None:
-        problems = [
+        problems = Problems(
             f"{entry.name}: got {value!r}; allowed: a finite number >= 0"
             for entry in dataclasses.fields(self)
             if (value := getattr(self, entry.name)) is not None and not (math.isfinite(value) and value >= 0.0)
-        ]
-        if not problems:
-            problems = self._path_problems()
-        if problems:
-            raise InputError(problems)
+        )
+        problems += [] if problems else self._path_problems()
+        problems.check()
 
     def _path_problems(self) -> list[str]:
         """Paths that lead nowhere."""

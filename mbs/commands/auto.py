@@ -105,7 +105,7 @@ def _settings(
 
     def first(name: str) -> Any:
         choice = CHOICES[name]
-        return next(iter(choice.values(texts_of(arguments, choice), [])), None)
+        return next(iter(choice.values(texts_of(arguments, choice), Problems())), None)
 
     stated = {name: first(name) for name in ("clearance", "films", "supply", "physics")}
     stated["physics"] = physics or stated["physics"]
@@ -128,7 +128,7 @@ def _problems(arguments: argparse.Namespace, auto: bool) -> list[str]:
     ]
 
 
-def read_tolerance(arguments: argparse.Namespace, problems: list[str]) -> float | None:
+def read_tolerance(arguments: argparse.Namespace, problems: Problems) -> float | None:
     """Read --auto-tolerance: a part of a stiffness or damping, such as "5 %", or of a level, such as "1 dB".
 
     A run-up that has a --tolerance of its levels alone has that.
@@ -140,7 +140,7 @@ def read_tolerance(arguments: argparse.Namespace, problems: list[str]) -> float 
     ----------
     arguments : argparse.Namespace
         Arguments of a command.
-    problems : list of str
+    problems : Problems
         Appended to.
     """
     from mbs.planning.physics import MOST_TOLERANCE

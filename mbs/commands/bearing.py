@@ -10,13 +10,13 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.errors import AnalysisError, InputError, Problems
 from ehdmaps.outputs import Output, output_problems, write_figure
 from ehdmaps.physics.designations.families import not_served
 from ehdmaps.physics.designations.reader import BALLS, TAPERED, read_designation
 from mbs.commands.common import with_bands
-from mbs.commands.one_bearing.bands import point_lines
-from mbs.commands.one_bearing.family import Family, Request
+from mbs.one_bearing.bands import point_lines
+from mbs.one_bearing.family import Family, Request
 from mbs.output.one_bearing.kind import Description, Kind, Points
 from mbs.output.one_bearing.table import heading, point_text
 
@@ -31,7 +31,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Compute all points, describe and write them; status 1 where one is outside of what the laws hold for."""
     arguments = _without_deviations(arguments)
     if getattr(arguments, "vibration", None) is not None:
-        from mbs.commands.one_bearing.vibration import run_vibration
+        from mbs.commands.vibration import run_vibration
 
         stated = getattr(arguments, "deviations", {})
         keys = "\n".join(f"{key} = {_braced(value)}" for key, value in stated.items())
@@ -40,10 +40,10 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         raise InputError('--load: missing; allowed: on the inner ring, such as "5 kN", or a history, FILE.csv')
     history = [text for given in arguments.load for text in given if text.strip().lower().endswith(HISTORY)]
     if history:
-        from mbs.commands.one_bearing.history import run_history
+        from mbs.one_bearing.history import run_history
 
         return run_history(arguments, history[0], family_of)
-    asked: list[str] = []
+    asked = Problems()
     if not arguments.speed:
         asked.append('--speed: missing; allowed: of the inner ring, such as "1500 rpm"')
     banded = with_bands(arguments, asked)
@@ -55,9 +55,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     if ending == CIRCUIT:
         asked += _circuit_problems(path, arguments.permittivity is not None)
         arguments = argparse.Namespace(**{**vars(arguments), "output": None})
-    if asked:
-        raise InputError(asked)
-    from mbs.commands.one_bearing import request as one  # with what its refusals do not need
+    asked.check()
+    from mbs.one_bearing import request as one  # with what its refusals do not need
 
     family = family_of(arguments.bearing, arguments.axial)
     each = [{**vars(arguments), "temperature": [text]} for text in warmth] if over else [vars(arguments)]
@@ -126,7 +125,7 @@ class _Answer(NamedTuple):
 
 def _answer(request: Request, banded: bool) -> _Answer:
     """Answer one request."""
-    from mbs.commands.one_bearing import request as one
+    from mbs.one_bearing import request as one
 
     family, description, points = request.family, request.description, one.points_of(request)
     bands = one.bands_of(request, points) if banded else {}
@@ -174,30 +173,30 @@ def family_of(name: str, axial: str | None) -> Family:
         from ehdmaps.jobs.balls import balls_of
 
         if balls_of(name) is not None:
-            from mbs.commands.one_bearing.balls import BALL_BEARINGS
+            from mbs.one_bearing.balls import BALL_BEARINGS
 
             return BALL_BEARINGS
     if not by_keys:
         found = read_designation(name)
         kind = "" if found is None else found.kind
         if kind in BALLS or (not kind and _BALLS.match(name)):
-            from mbs.commands.one_bearing.balls import BALL_BEARINGS
+            from mbs.one_bearing.balls import BALL_BEARINGS
 
             return BALL_BEARINGS
         if words := not_served(name):
             raise InputError(f"BEARING: {words}")
         if kind == TAPERED:
-            from mbs.commands.one_bearing.ribs import TAPERED_BEARINGS
+            from mbs.one_bearing.ribs import TAPERED_BEARINGS
 
             return TAPERED_BEARINGS
         if axial is not None:
             from ehdmaps.physics.rollers.ribbed_geometry import ribbed_way
 
             if ribbed_way(name):
-                from mbs.commands.one_bearing.ribs import RIBBED_BEARINGS
+                from mbs.one_bearing.ribs import RIBBED_BEARINGS
 
                 return RIBBED_BEARINGS
-    from mbs.commands.one_bearing.cylindrical import CYLINDERS
+    from mbs.one_bearing.cylindrical import CYLINDERS
 
     return CYLINDERS
 

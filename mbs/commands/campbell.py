@@ -21,7 +21,7 @@ from mbs.analyses.soundness import Judged
 from mbs.analyses.step_error import StepCheck
 from mbs.commands.auto import analysed
 from mbs.commands.campbell_recorded import measured_lines, measured_run, read_look, recorded_runs, signal_problems
-from mbs.commands.cases import load_cases
+from mbs.commands.cases import files_read, load_cases
 from mbs.commands.common import Looked, Told, chosen_workers, write, write_plot
 from mbs.linearised.sweep_result import ComplexSweep, Sweep
 from mbs.model.elements import Sensor
@@ -134,23 +134,19 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
     from mbs.output.campbell_plot import MOST_LAWS
 
     looked = read_look(arguments, problems)
-    try:
+    cases: list[Case] = []
+    with problems:
         cases = load_cases(
             arguments,
             needs=lambda scene: campbell_problems(scene, looked.settings(scene.campbell), looked.sensors),
+            most=MOST_LAWS,
         )
-    except InputError as error:
-        raise InputError((*problems, *error.problems)) from error
-    if len(cases) > MOST_LAWS:
-        problems.append(
-            f"--law, --map, --films, --supply, --clearance, --load-factor: got {len(cases)} combinations; allowed: up "
-            f"to {MOST_LAWS} side by side"
-        )
+    if not cases:
+        raise InputError(problems)
     problems += several_problems(tolerance, cases)
     scene = cases[0].model.scene
     settings = looked.settings(scene.campbell)
-    read = [arguments.scene, *(getattr(arguments, "map", None) or ()), *scene.files, *looked.files]
-    problems += signal_problems(arguments, read, len(cases))
+    problems += signal_problems(arguments, [*files_read(arguments, scene), *looked.files], len(cases))
     measured = None
     if looked.measured and not problems:
         if len(cases) >= MOST_LAWS:

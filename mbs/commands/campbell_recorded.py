@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ehdmaps.errors import InputError, Problems
+from ehdmaps.errors import InputError, Problems, problems_after
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.units import RPM, short
 from mbs.analyses.campbell import CampbellResult, waterfall_of
@@ -91,14 +91,14 @@ class Look:
         )
 
 
-def read_look(arguments: argparse.Namespace, problems: list[str]) -> Look:
+def read_look(arguments: argparse.Namespace, problems: Problems) -> Look:
     """Read the options of what is looked at.
 
     Parameters
     ----------
     arguments : argparse.Namespace
         Arguments of the command.
-    problems : list of str
+    problems : Problems
         What is wrong is appended.
     """
     band, source = read_band(arguments, problems), read_source(arguments, problems)
@@ -111,14 +111,14 @@ def read_look(arguments: argparse.Namespace, problems: list[str]) -> Look:
     return Look(sensors, band, _orders(arguments, problems), source, measured, channels)
 
 
-def read_source(arguments: argparse.Namespace, problems: list[str]) -> SpeedSource:
+def read_source(arguments: argparse.Namespace, problems: Problems) -> SpeedSource:
     """Read where the speed of a recorded run is.
 
     Parameters
     ----------
     arguments : argparse.Namespace
         Arguments of the command.
-    problems : list of str
+    problems : Problems
         What is wrong is appended.
     """
     channel, tacho, pulses, table = (getattr(arguments, name, None) for name in OF_A_SPEED)
@@ -128,11 +128,9 @@ def read_source(arguments: argparse.Namespace, problems: list[str]) -> SpeedSour
         count = math.nan
     if pulses is not None and tacho is None:
         problems.append("--pulses: stands without --tacho; allowed: with it")
-    try:
+    with problems.after("--speed-channel, --tacho, --pulses, --speed-table: "):
         return SpeedSource(channel, tacho, count, None if table is None else Path(table))
-    except InputError as error:
-        problems += [f"--speed-channel, --tacho, --pulses, --speed-table: {line}" for line in error.problems]
-        return AS_IT_IS
+    return AS_IT_IS
 
 
 def signal_problems(arguments: argparse.Namespace, read: list[str | Path], laws: int) -> list[str]:
@@ -181,7 +179,7 @@ def measured_run(look: Look, model: Model, settings: CampbellSettings) -> Record
         With what is wrong about the file, or does not fit.
     """
     assert look.measured is not None
-    problems: list[str] = []
+    problems = Problems()
     sensors = chosen_sensors(model.scene, settings, look.sensors, problems)
     course = run_course(model.scene, settings.highest, problems)
     if problems or course is None:
@@ -191,13 +189,11 @@ def measured_run(look: Look, model: Model, settings: CampbellSettings) -> Record
     (record, *others) = read_time_data(look.measured).records
     if others:
         raise InputError(f"--measured: {look.measured} has {1 + len(others)} runs; allowed: one")
-    try:
+    with problems_after(f"--measured {look.measured}: "):
         turned = with_speed(record, look.source)
         channels = channels_beside(turned.record, sensors, look.channels)
         alike = dataclasses.replace(settings, window=window, orders=tuple(order for order, _ in orders))
         found = recorded_run_of(turned.record, channels, alike)
-    except InputError as error:
-        raise InputError([f"--measured {look.measured}: {line}" for line in error.problems]) from error
     return dataclasses.replace(found, notes=turned.notes)
 
 
@@ -322,7 +318,7 @@ def _reference(channel: TimeChannel) -> Reference:
     return reference
 
 
-def _orders(arguments: argparse.Namespace, problems: list[str]) -> tuple[float, ...]:
+def _orders(arguments: argparse.Namespace, problems: Problems) -> tuple[float, ...]:
     """Read --orders."""
     found = []
     for text in _list(arguments, "orders"):

@@ -57,6 +57,7 @@ def load_cases(
     *,
     needs: Needs | None = None,
     speeds: SweepRange | None = None,
+    most: int = MOST_CASES,
 ) -> list[Case]:
     """Read scene, laws, maps, clearances and load factors into models; all problems at once.
 
@@ -73,6 +74,8 @@ def load_cases(
         What a scene lacks for the analysis, by sentences; it is said before laws are made, which takes time.
     speeds : SweepRange, optional
         Speeds that are looked at instead of [sweep] of the scene.
+    most : int
+        How many models stand side by side at most, such as those that can be told apart in a figure.
 
     Raises
     ------
@@ -85,13 +88,13 @@ def load_cases(
         problems += _one_each(arguments)
     found = _combined(arguments, scene, problems, several)
     problems += _output_problems(arguments, scene, kind)
-    if len(found) > MOST_CASES:
+    if len(found) > most:
         options = ", ".join(f"--{choice.name}" for choice in OPTIONS if texts_of(arguments, choice))
-        problems.append(f"{options}: got {len(found)} combinations; allowed: at most {MOST_CASES}")
+        problems.append(f"{options}: got {len(found)} combinations; allowed: up to {most} side by side")
     lacking = list(needs(scene)) if scene is not None and needs is not None else []
     problems += lacking
-    if scene is None or len(found) > MOST_CASES or lacking:
-        raise InputError(tuple(dict.fromkeys(problems)))
+    if scene is None or len(found) > most or lacking:
+        raise InputError(problems)
     laws = {one.subject.law.label for one in found}
     cases = []
     for one in found:
@@ -111,7 +114,7 @@ def load_cases(
 
 
 def read_compared(
-    arguments: argparse.Namespace, problems: list[str], kind: Kind = RESULT
+    arguments: argparse.Namespace, problems: Problems, kind: Kind = RESULT
 ) -> tuple[Scene | None, list[LawChoice], float | None]:
     """Read the scene with what is chosen of it, its laws, and one clearance; the command builds its models itself.
 
@@ -119,7 +122,7 @@ def read_compared(
     ----------
     arguments : argparse.Namespace
         The same as for `load_cases`.
-    problems : list of str
+    problems : Problems
         What is wrong is appended.
     kind : Kind
         Kind of file that -o writes.
@@ -139,14 +142,14 @@ def read_compared(
     return first.scene, [one.subject.law for one in found], first.clearance
 
 
-def read_dry(arguments: argparse.Namespace, problems: list[str]) -> tuple[Scene | None, float | None]:
+def read_dry(arguments: argparse.Namespace, problems: Problems) -> tuple[Scene | None, float | None]:
     """Read the scene with what is chosen of it beside its law, once each, and the clearance.
 
     Parameters
     ----------
     arguments : argparse.Namespace
         The same as for `load_cases`.
-    problems : list of str
+    problems : Problems
         What is wrong is appended.
     """
     scene = _read_scene(arguments, problems)
@@ -169,7 +172,7 @@ def _one_each(arguments: argparse.Namespace) -> list[str]:
 
 
 def _combined(
-    arguments: argparse.Namespace, scene: Scene | None, problems: list[str], several: bool = True
+    arguments: argparse.Namespace, scene: Scene | None, problems: Problems, several: bool = True
 ) -> list[Combination]:
     """Everything that was chosen, in every combination; nothing where the scene could not be read.
 
@@ -189,7 +192,7 @@ def _combined(
     return combinations([Subject(scene, law) for law in laws], values, problems)
 
 
-def _values(arguments: argparse.Namespace, problems: list[str]) -> dict[str, list[Any]]:
+def _values(arguments: argparse.Namespace, problems: Problems) -> dict[str, list[Any]]:
     """Values that are given for the choices, by their names."""
     speed = CHOICES["speed"]
     # Commands that look at several speeds have an option of the same name, FROM TO POINTS.
@@ -199,45 +202,52 @@ def _values(arguments: argparse.Namespace, problems: list[str]) -> dict[str, lis
 
 
 def _laws(
-    arguments: argparse.Namespace, scene: Scene, values: dict[str, list[Any]], problems: list[str]
+    arguments: argparse.Namespace, scene: Scene, values: dict[str, list[Any]], problems: Problems
 ) -> list[LawChoice]:
     """The laws that are meant: those named, and each set of maps; without either films from the film table."""
     names, paths, laws = values["law"], values["map"], list[LawChoice]()
     for name in names:
         if name == "map" and paths:
             continue
-        try:
+        with problems:
             laws.append(named_law(name, scene))
-        except InputError as error:
-            problems += error.problems
     if paths:
         laws += opened_maps(paths, scene, problems)
-    if laws or names or paths:
-        return laws
-    try:
-        return [named_law(None, scene)]
-    except InputError as error:
-        problems += error.problems
-        return []
+    if not (laws or names or paths):
+        with problems:
+            laws.append(named_law(None, scene))
+    return laws
 
 
-def _read_scene(arguments: argparse.Namespace, problems: list[str]) -> Scene | None:
+def _read_scene(arguments: argparse.Namespace, problems: Problems) -> Scene | None:
     """Read the scene; None where problems were noted."""
-    try:
+    with problems:
         return read_scene(arguments.scene)
-    except InputError as error:
-        problems += error.problems
-        return None
+    return None
+
+
+def files_read(arguments: argparse.Namespace, scene: Scene | None) -> list[str | Path]:
+    """All files that a command reads, over which it must not write: scene, maps, tables of laws, and what they name.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Arguments of the command.
+    scene : Scene or None
+        The scene that was read.
+    """
+    tables = [path for law in texts_of(arguments, CHOICES["law"]) if (path := table_path(law)) is not None]
+    maps = texts_of(arguments, CHOICES["map"])
+    return [arguments.scene, *maps, *tables, *(scene.files if scene else ())]
 
 
 def _output_problems(arguments: argparse.Namespace, scene: Scene | None, kind: Kind) -> list[str]:
     """List problems with the files that are written."""
-    tables = [path for law in texts_of(arguments, CHOICES["law"]) if (path := table_path(law)) is not None]
-    read: list[str | Path] = [*texts_of(arguments, CHOICES["map"]), *tables, *(scene.files if scene else ())]
+    read = files_read(arguments, scene)
     problems = scene_output_problems(arguments.scene, read, arguments.output, arguments.plot, kind)
     waterfall = getattr(arguments, "waterfall", None)
     outputs = [Output("--plot", arguments.plot, FIGURE), Output("--waterfall", waterfall, FIGURE)]
-    return problems + (output_problems(outputs, [arguments.scene, *read]) if waterfall else [])
+    return problems + (output_problems(outputs, read) if waterfall else [])
 
 
 def scene_problems(scene: Scene, error: InputError) -> list[str]:
@@ -288,7 +298,7 @@ class Combination:
 
 
 def combinations(
-    subjects: Sequence[Subject], values: Mapping[str, Sequence[Any]], problems: list[str]
+    subjects: Sequence[Subject], values: Mapping[str, Sequence[Any]], problems: Problems
 ) -> list[Combination]:
     """Combine subjects with all values that were chosen; a law that a choice does not concern stands once.
 
@@ -298,7 +308,7 @@ def combinations(
         Scene with each of the laws.
     values : mapping of str to sequence
         Values of the other choices, by their names; left out: nothing was chosen.
-    problems : list of str
+    problems : Problems
         What is wrong is appended.
     """
     found = [Combination(subject if subjects[1:] else _with_label(subject)) for subject in subjects]
@@ -325,16 +335,16 @@ def _with_label(subject: Subject) -> Subject:
     return dataclasses.replace(subject, law=dataclasses.replace(subject.law, label=NO_LAW))
 
 
-def _each(one: Combination, choice: SceneChoice, several: Sequence[Any], problems: list[str]) -> list[Combination]:
+def _each(one: Combination, choice: SceneChoice, several: Sequence[Any], problems: Problems) -> list[Combination]:
     """A combination with each value of a choice."""
     if len(several) > 1 and not choice.concerns(one.subject):
         return [one]
     found = []
     for value in several:
-        try:
+        subject: Subject | None = None
+        with problems.after(f"--{choice.name}: "):
             subject = choice.chosen(one.subject, value)
-        except InputError as error:
-            problems += [f"--{choice.name}: {problem}" for problem in error.problems]
+        if subject is None:
             continue
         words = choice.words(value)
         if subject.law is one.subject.law:

@@ -11,9 +11,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from ehdmaps.errors import InputError
+from ehdmaps.choices import read_option
+from ehdmaps.errors import Problems
 from ehdmaps.outputs import write_figure
-from ehdmaps.units import Display, quantity
+from ehdmaps.units import whole_number
 from mbs.output.files import write_dataset
 from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.scene.scene import Scene
@@ -31,14 +32,14 @@ ALL = USUAL_BANDS = "all"
 """What `--bands` is called that finds bands of what is not known, and what is found where nothing is asked."""
 
 
-def read_band(arguments: argparse.Namespace, problems: list[str]) -> dict[str, Any]:
+def read_band(arguments: argparse.Namespace, problems: Problems) -> dict[str, Any]:
     """Read the fields of `CampbellSettings` that are given.
 
     Parameters
     ----------
     arguments : argparse.Namespace
         Arguments, with `highest` and `window` where the command has them.
-    problems : list of str
+    problems : Problems
         What is wrong is appended.
     """
     found = {
@@ -182,23 +183,21 @@ def write_plot(figure: Figure, path: str) -> list[str]:
     return [f"{path}: written", *dict.fromkeys(f"warning: {path}: {entry.message}" for entry in caught)]
 
 
-def read_cage_angles(arguments: argparse.Namespace, problems: list[str]) -> int:
+def read_cage_angles(arguments: argparse.Namespace, problems: Problems) -> int:
     """Read the number of cage angles of a linear analysis; that of the analysis where none is given.
 
     Parameters
     ----------
     arguments : argparse.Namespace
         Arguments with `cage_angles`, or without it.
-    problems : list of str
+    problems : Problems
         Appended to.
     """
     text = getattr(arguments, "cage_angles", None)
-    if text is None:
-        return CAGE_ANGLES
-    count = int(text) if text.isascii() and text.isdigit() and len(text) < 6 else 0
-    if not 1 <= count <= MOST_ANGLES:
-        problems.append(f"--cage-angles: got {text!r:.40}; allowed: a whole number from 1 to {MOST_ANGLES}")
-    return count
+    if text is not None:
+        with problems.after("--cage-angles: "):
+            return whole_number(text, 1, MOST_ANGLES)
+    return CAGE_ANGLES
 
 
 def with_bands(arguments: argparse.Namespace, problems: list[str]) -> bool:
@@ -230,36 +229,3 @@ def out_of_place(arguments: argparse.Namespace, names: Iterable[str], words: str
         What is wrong, and what is allowed.
     """
     return [f"--{name.replace('_', '-')}: {words}" for name in names if getattr(arguments, name, None)]
-
-
-def read_option(
-    option: str, text: str | None, unit: str, limits: tuple[float, float], display: Display, problems: list[str]
-) -> float | None:
-    """Read a quantity of the command line within limits; None if absent or wrong, with the problem noted.
-
-    Parameters
-    ----------
-    option : str
-        Name of the option, such as "--highest".
-    text : str or None
-        What was given; None if it was left out.
-    unit : str
-        SI unit of the value.
-    limits : (float, float)
-        Smallest and largest value that is allowed, in SI.
-    display : Display
-        How messages show them.
-    problems : list of str
-        Appended to.
-    """
-    if text is None:
-        return None
-    try:
-        value = quantity(text, unit)
-    except InputError as error:
-        problems.append(f"{option}: {error.problems[0]}")
-        return None
-    if not limits[0] <= value <= limits[1]:
-        problems.append(f"{option}: got {text!r:.60}; allowed: {display.text(limits[0])} to {display.text(limits[1])}")
-        return None
-    return value

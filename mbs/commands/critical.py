@@ -87,12 +87,7 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
     with_bands(arguments, problems)
     settings = dataclasses.replace(settings, cage_angles=read_cage_angles(arguments, problems))
     with problems:
-        cases = load_cases(arguments)
-    if len(cases) > MOST_COMPARED_CASES:
-        problems.append(
-            f"--law, --map, --films, --supply, --clearance: got {len(cases)} cases; allowed: up to "
-            f"{MOST_COMPARED_CASES} side by side"
-        )
+        cases = load_cases(arguments, most=MOST_COMPARED_CASES)
     problems.check()
     return _Asked(cases, settings)
 

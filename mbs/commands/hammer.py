@@ -16,7 +16,7 @@ from mbs.analyses.hammer import HIGHEST, HammerResult, HammerSettings, hammer_pr
 from mbs.analyses.reach import outside_at, source_of
 from mbs.analyses.soundness import Judged
 from mbs.commands.auto import analysed
-from mbs.commands.cases import load_cases
+from mbs.commands.cases import files_read, load_cases
 from mbs.commands.common import Looked, Told, chosen_workers
 from mbs.linearised.modes import Modes
 from mbs.modal.uff import UFF, Measurement, write_uff
@@ -58,7 +58,7 @@ def _asked(arguments: argparse.Namespace) -> list[Case]:
     """A case for each law, map, kind of films, oil supply and clearance; of several all files are looked at."""
     cases = load_cases(arguments, kind=UFF, needs=hammer_problems)
     if cases[1:]:
-        read = [arguments.scene, *(getattr(arguments, "map", None) or ()), *cases[0].model.scene.files]
+        read = files_read(arguments, cases[0].model.scene)
         check_outputs([Output("-o", path, UFF) for path in _files(arguments.output, len(cases))], read)
     return cases
 
@@ -116,13 +116,10 @@ def _options(arguments: argparse.Namespace) -> tuple[float | None, float | None]
     for option, text, unit in (("--highest", arguments.highest, "Hz"), ("--duration", arguments.duration, "s")):
         found.append(None)
         if text is not None:
-            try:
+            with problems.after(f"{option}: "):
                 found[-1] = quantity(text, unit)
-            except InputError as error:
-                problems.append(f"{option}: {error.problems[0]}")
-            else:
                 if not found[-1]:
-                    problems.append(f"{option}: got {text!r:.60}; allowed: above 0 {unit}")
+                    raise InputError(f"got {text!r:.60}; allowed: above 0 {unit}")
     if arguments.plot:
         problems.append(f"--plot: got {arguments.plot}, but records are not drawn; see `mbs modal-fit --plot`")
     if not arguments.output:

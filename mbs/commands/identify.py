@@ -102,7 +102,7 @@ def _asked(arguments: argparse.Namespace) -> tuple[Model, list[Measured], list[s
                 measured += own
                 notes += said
     if problems or model is None:
-        raise InputError(tuple(dict.fromkeys(problems)))
+        raise InputError(problems)
     return model, measured, notes, angles
 
 

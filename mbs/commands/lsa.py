@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError, Problems
+from ehdmaps.errors import Problems
 from ehdmaps.exports.mat import KIND
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.units import written
@@ -18,7 +18,7 @@ from mbs.analyses.lsa import LsaResult, LsaSettings, lsa_dataset, lsa_figure, ls
 from mbs.analyses.reach import fade_lines, outside_at
 from mbs.analyses.soundness import Judged
 from mbs.commands.auto import analysed
-from mbs.commands.cases import load_cases
+from mbs.commands.cases import files_read, load_cases
 from mbs.commands.common import Looked, read_cage_angles, with_bands, write
 from mbs.linearised.linear import peak_places, response_display
 from mbs.linearised.peaks import Linearised, by_laws, peaks_of_modes
@@ -83,21 +83,12 @@ def _asked(arguments: argparse.Namespace) -> list[Case]:
     problems = Problems()
     cases: list[Case] = []
     with problems:
-        cases = load_cases(arguments, needs=lsa_problems)
+        cases = load_cases(arguments, needs=lsa_problems, most=MOST_COMPARED_CASES)
     if file is not None:
-        read = [
-            arguments.scene,
-            *(getattr(arguments, "map", None) or ()),
-            *(cases[0].model.scene.files if cases else ()),
-        ]
+        read = files_read(arguments, cases[0].model.scene if cases else None)
         outputs = [Output("-o", arguments.output, RESULT), Output("--plot", arguments.plot, FIGURE)]
         problems += output_problems([*outputs, Output("--state-space", file, KIND)], read)
     problems.check()
-    if len(cases) > MOST_COMPARED_CASES:
-        raise InputError(
-            f"--law, --map, --films, --supply, --clearance: got {len(cases)} cases; allowed: up to "
-            f"{MOST_COMPARED_CASES} side by side"
-        )
     return cases
 
 

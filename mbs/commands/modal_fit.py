@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ehdmaps.errors import InputError, Problems
+from ehdmaps.errors import InputError, Problems, problems_after
 from ehdmaps.outputs import FIGURE, Output, output_problems, write_figure
 from ehdmaps.units import quantity
 from mbs.modal.estimation import Estimate, estimate, needed_decay
@@ -85,10 +85,8 @@ def _options(
     problems = Problems()
     ends = []
     for text in arguments.band or ():
-        try:
+        with problems.after("--band: "):
             ends.append(quantity(text, "Hz"))
-        except InputError as error:
-            problems.append(f"--band: {error.problems[0]}")
     if len(ends) == 2 and not 0.0 <= ends[0] < ends[1]:
         problems.append(
             f"--band: got {arguments.band[0]!r:.40} to {arguments.band[1]!r:.40}; allowed: rising, from 0 Hz on"
@@ -97,20 +95,15 @@ def _options(
     if arguments.window_decay == "none":
         decay = 0.0
     elif arguments.window_decay is not None:
-        try:
+        with problems, problems_after("--window-decay: ", ", or none"):
             constant = quantity(arguments.window_decay, "s")
-            if constant > 0.0:
-                decay = 1.0 / constant
-            else:
-                problems.append(f"--window-decay: got {arguments.window_decay!r:.40}; allowed: above 0 s, or none")
-        except InputError as error:
-            problems.append(f"--window-decay: {error.problems[0]}, or none")
+            if not constant > 0.0:
+                raise InputError(f"got {arguments.window_decay!r:.40}; allowed: above 0 s")
+            decay = 1.0 / constant
     windowed: float | None = None
     if arguments.windowed is not None:
-        try:
+        with problems, problems_after("--windowed: ", ", or what it leaves at the end, as 1 %"):
             windowed = _windowed(arguments.windowed[0])
-        except InputError as error:
-            problems.append(f"--windowed: {error.problems[0]}, or what it leaves at the end, as 1 %")
         if arguments.windowed[1:] not in ([], ["force"]):
             problems.append(f"--windowed: got {' '.join(arguments.windowed[1:])!r:.40} behind the time; allowed: force")
     files = (

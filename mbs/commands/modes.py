@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.arrays import IntArray
-from ehdmaps.errors import InputError
+from ehdmaps.choices import read_option
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.extras import lacking
 from ehdmaps.outputs import FIGURE, Output, output_problems, write_text
 from ehdmaps.units import RPM
@@ -17,8 +18,8 @@ from mbs.analyses.modes import ModesResult, modes
 from mbs.analyses.reach import fade_lines, outside_at
 from mbs.analyses.soundness import Judged
 from mbs.commands.auto import analysed
-from mbs.commands.cases import load_model
-from mbs.commands.common import Looked, read_cage_angles, read_option, with_bands, write, write_plot
+from mbs.commands.cases import files_read, load_model
+from mbs.commands.common import Looked, read_cage_angles, with_bands, write, write_plot
 from mbs.linearised.mode_names import mode_names
 from mbs.linearised.modes import Modes
 from mbs.linearised.shapes import skeleton
@@ -52,7 +53,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         lambda asked: modes(asked[0], cage_angles=asked[2], highest=asked[1]),
         lambda asked: Looked(at_one_speed(asked[0].scene), asked[1]),
     )
-    result, highest = done.result, _highest(arguments, done.result.model.scene, [])
+    result, highest = done.result, _highest(arguments, done.result.model.scene, Problems())
     model, found = result.model, result.modes
     bands = result.bands_to(highest) if with_bands(arguments, []) and model.scene.has_bearings else None
     free, overdamped, swinging = kinds(found)
@@ -91,18 +92,16 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
 def _asked(arguments: argparse.Namespace) -> tuple[Model, float, int]:
     """The model, the highest frequency to show [Hz], and the cage angles; all problems at once."""
-    problems: list[str] = []
-    try:
+    problems = Problems()
+    model: Model | None = None
+    with problems:
         model = load_model(arguments)
-    except InputError as error:
-        problems += error.problems
-        model = None
     highest = _highest(arguments, None if model is None else model.scene, problems)
     problems += _shape_problems(arguments, model)
     cage_angles = read_cage_angles(arguments, problems)
     with_bands(arguments, problems)
     if problems or model is None:
-        raise InputError(tuple(dict.fromkeys(problems)))
+        raise InputError(problems)
     return model, highest, cage_angles
 
 
@@ -110,7 +109,7 @@ def _shape_problems(arguments: argparse.Namespace, model: Model | None) -> list[
     """List problems with pictures and files of shapes."""
     picture, file = getattr(arguments, "shapes", None), getattr(arguments, "shapes_file", None)
     numbers = getattr(arguments, "shape_modes", None)
-    problems = []
+    problems = Problems()
     if numbers:
         if picture is None and file is None:
             problems.append("--shape-modes: stands without --shapes and --shapes-file; allowed: with one of them")
@@ -123,7 +122,7 @@ def _shape_problems(arguments: argparse.Namespace, model: Model | None) -> list[
                 problems.append(f"--shape-modes: got {len(numbers)} modes for a picture; allowed: up to {MOST_SHAPES}")
     if file is not None:
         problems += lacking("flexible", "meshio", "--shapes-file")
-    read = [arguments.scene, *(getattr(arguments, "map", None) or ()), *(model.scene.files if model else ())]
+    read = files_read(arguments, model.scene if model else None)
     series = series_files(Path(file)) if file is not None and Path(file).suffix.lower() == ".pvd" else []
     outputs = [
         Output("-o", getattr(arguments, "output", None), RESULT),
@@ -169,7 +168,7 @@ def _write_shapes(arguments: argparse.Namespace, result: ModesResult, shown: Int
     return lines
 
 
-def _highest(arguments: argparse.Namespace, scene: Scene | None, problems: list[str]) -> float:
+def _highest(arguments: argparse.Namespace, scene: Scene | None, problems: Problems) -> float:
     """The highest frequency to show [Hz]."""
     text = getattr(arguments, "highest", None)
     highest = read_option("--highest", text, "Hz", (LOWEST_HIGHEST, HIGHEST_HIGHEST), HERTZ, problems)

@@ -85,7 +85,7 @@ def _turning(found: PlanResult) -> list[str]:
 
 def _read(arguments: argparse.Namespace) -> tuple[Scene, PlanSettings]:
     """Read the scene with what is chosen of it, and the margin; all problems at once."""
-    problems: list[str] = []
+    problems = Problems()
     margin = _margin(arguments.margin, problems)
     scene, clearance = read_dry(arguments, problems)
     settings = PlanSettings(clearance, margin)
@@ -96,11 +96,11 @@ def _read(arguments: argparse.Namespace) -> tuple[Scene, PlanSettings]:
         )
     problems += scene_output_problems(arguments.scene, scene.files if scene else (), arguments.output, kind=SEALED)
     if problems or scene is None:
-        raise InputError(tuple(dict.fromkeys(problems)))
+        raise InputError(problems)
     return scene, settings
 
 
-def _margin(text: str | None, problems: list[str]) -> float:
+def _margin(text: str | None, problems: Problems) -> float:
     """Read --margin."""
     if text is None:
         return MARGIN

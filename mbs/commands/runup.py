@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.choices import read_option
 from ehdmaps.errors import InputError, Problems
 from ehdmaps.figures import COLOURS
 from ehdmaps.units import RPM, closest
@@ -23,8 +24,8 @@ from mbs.analyses.soundness import Judged
 from mbs.analyses.step_error import StepCheck
 from mbs.commands.auto import analysed
 from mbs.commands.campbell_recorded import OF_A_SPEED, read_source, signal_problems
-from mbs.commands.cases import load_cases
-from mbs.commands.common import Looked, Told, chosen_workers, out_of_place, read_band, read_option, write
+from mbs.commands.cases import files_read, load_cases
+from mbs.commands.common import Looked, Told, chosen_workers, out_of_place, read_band, write
 from mbs.output.files import described
 from mbs.output.model_text import heading, held_lines
 from mbs.output.result_text import drive_lines, energy_lines, signal_lines
@@ -118,18 +119,14 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
     problems += out_of_place(
         arguments, OF_A_SPEED, "stands beside a scene, whose speed is known; allowed: with a recorded run"
     )
-    try:
-        cases = load_cases(arguments, needs=runup_problems)
-    except InputError as error:
-        raise InputError((*problems, *error.problems)) from error
+    cases: list[Case] = []
+    with problems:
+        cases = load_cases(arguments, needs=runup_problems, most=len(COLOURS))
+    if not cases:
+        raise InputError(problems)
     scene = cases[0].model.scene
-    if len(cases) > len(COLOURS):
-        problems.append(
-            f"--law, --map, --films, --supply, --clearance: got {len(cases)} cases; allowed: {len(COLOURS)}"
-        )
     problems += several_problems(tolerance, cases)
-    read = [arguments.scene, *(getattr(arguments, "map", None) or ()), *scene.files]
-    problems += signal_problems(arguments, read, len(cases))
+    problems += signal_problems(arguments, files_read(arguments, scene), len(cases))
     sound = getattr(arguments, "sound", None)
     if (getattr(arguments, "signals", None) or sound or wanted.speeds) and not scene.sensors:
         problems.append(
@@ -146,15 +143,13 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
         silent = silent_run(fine)
         channel = TimeChannel("silent", "acceleration", "m/s2")
         record = TimeRecord("run", silent.time, (channel,), silent.signal[:, None], silent.speed, silent.angle)
-        try:
+        with problems.after("--spectrum-at: "):
             amplitudes_at(record, wanted.speeds, wanted.window, wanted.highest or scene.campbell.highest)
-        except InputError as error:
-            problems += [f"--spectrum-at: {line}" for line in error.problems]
     problems.check()
     return _Asked(cases, wanted, tolerance)
 
 
-def _read_spectra(arguments: argparse.Namespace, problems: list[str]) -> _Spectra:
+def _read_spectra(arguments: argparse.Namespace, problems: Problems) -> _Spectra:
     """Read which spectra are wanted."""
     given = getattr(arguments, "spectrum_at", None) or []
     limits = (0.0, _LARGEST_SPEED)
@@ -170,16 +165,14 @@ def _read_spectra(arguments: argparse.Namespace, problems: list[str]) -> _Spectr
 def _recorded(arguments: argparse.Namespace) -> tuple[str, int]:
     """Look at the runs of a file, without simulating anything."""
     words = "stands beside a run that is recorded; allowed: with a scene, which is simulated"
-    problems = out_of_place(arguments, _OF_A_SCENE, words)
+    problems = Problems(out_of_place(arguments, _OF_A_SCENE, words))
     wanted, source = _read_spectra(arguments, problems), read_source(arguments, problems)
     read = [arguments.scene, *([source.table] if source.table else [])]
     problems += signal_problems(arguments, read, 1)
-    if problems:
-        raise InputError(tuple(dict.fromkeys(problems)))
+    problems.check()
     data = read_time_data(arguments.scene)
-    problems = signal_problems(arguments, read, len(data.records))
-    if problems:
-        raise InputError(problems)
+    problems += signal_problems(arguments, read, len(data.records))
+    problems.check()
     # Signals alone can be looked at, and written, without a speed.
     speedless = data.records[0].speed is None and not wanted.speeds and source == SpeedSource()
     turned = [] if speedless else [with_speed(record, source) for record in data.records]

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError, Problems
-from ehdmaps.units import DAMPER, RPM, SPRING, quantity
+from ehdmaps.errors import Problems
+from ehdmaps.units import DAMPER, RPM, SPRING, quantity, whole_number
 from mbs.analyses.case import Case
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating
@@ -149,28 +149,14 @@ def read_speeds(texts: Sequence[str]) -> SweepRange:
     problems = Problems()
     ends = []
     for text in texts[:2]:
-        try:
+        with problems.after("--speed: "):
             ends.append(quantity(text, "rad/s"))
-        except InputError as error:
-            problems.append(f"--speed: {error.problems[0]}")
-    points = whole(texts[2])
-    if not 2 <= points <= MOST_SPEEDS:
-        problems.append(f"--speed: got {texts[2]!r:.40} points; allowed: a whole number from 2 to {MOST_SPEEDS}")
+    with problems.after("--speed, POINTS: "):
+        points = whole_number(texts[2], 2, MOST_SPEEDS)
     if len(ends) == 2 and not 0.0 <= ends[0] < ends[1] <= 1e5:
         problems.append(f"--speed: got from {texts[0]!r:.40} to {texts[1]!r:.40}; allowed: rising, from 0 rpm on")
     problems.check()
     return SweepRange(ends[0], ends[1], points)
-
-
-def whole(text: str) -> int:
-    """Read a whole number of a few digits; 0 for anything else.
-
-    Parameters
-    ----------
-    text : str
-        What was given.
-    """
-    return int(text) if text.isascii() and text.isdigit() and len(text) < 6 else 0
 
 
 def _course(result: Sweep) -> list[str]:

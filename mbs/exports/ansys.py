@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import argparse
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import Problems
 from ehdmaps.outputs import Kind, has_mark
 from mbs.exports.linear_bearing import Format, LinearBearing
 from mbs.exports.linear_table import target
@@ -24,15 +24,14 @@ _FASTEST = 99999.9999
 
 def _text(bearing: LinearBearing, header: tuple[str, ...], _: argparse.Namespace) -> str:
     """Write the file; what does not fit its three titles stands behind the numbers, which Ansys does not read."""
-    problems = []
+    problems = Problems()
     if bearing.frequencies.size > 1:
         problems.append(
             f"--frequency: got {bearing.frequencies.size} values; allowed: one, since Ansys' file has speeds only"
         )
     if bearing.speeds[-1] > _FASTEST:
         problems.append(f"--speed: got {bearing.speeds[-1]:.6g} rad/s; allowed: up to {_FASTEST:.6g} rad/s")
-    if problems:
-        raise InputError(problems)
+    problems.check()
     titles = (
         header[0],
         f"bearing {bearing.name}; 1 is y, 2 is z, both radial; N/m, N s/m, rad/s",

@@ -19,7 +19,7 @@ import re
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import Problems
 from ehdmaps.outputs import Kind, has_mark
 from mbs.exports.linear_bearing import Format, LinearBearing, refuse_speeds, whole
 from mbs.exports.linear_table import target
@@ -72,13 +72,12 @@ def _deck(
     bearing: LinearBearing, header: tuple[str, ...], arguments: argparse.Namespace, of_springs: FloatArray
 ) -> str:
     """Write nodes, springs at some of the frequencies, dashpots at all."""
-    problems: list[str] = []
+    problems = Problems()
     refuse_speeds(bearing, problems)
     node = whole("--node", arguments.node, problems)
     first = whole("--first-id", arguments.first_id, problems)
     place = _place(arguments.at, problems)
-    if problems:
-        raise InputError(problems)
+    problems.check()
     k, c = bearing.stiffness[0], bearing.damping[0]
     lines_at = dict(list(_LINES.items())[: 6 if bearing.axial else 3])
     name = re.sub(r"[^A-Z0-9]+", "_", bearing.name.upper()).strip("_")[:20] or "BEARING"

@@ -10,7 +10,9 @@ from importlib import import_module
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import Problems
 from ehdmaps.outputs import Kind
+from ehdmaps.units import whole_number
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,7 +148,7 @@ def refuse_speeds(bearing: LinearBearing, problems: list[str]) -> None:
         problems.append(f"--speed: got {bearing.speeds.size} values; allowed: one; export a file for each speed")
 
 
-def whole(option: str, text: str, problems: list[str]) -> int:
+def whole(option: str, text: str, problems: Problems) -> int:
     """Read the number of a node or element.
 
     Parameters
@@ -155,10 +157,9 @@ def whole(option: str, text: str, problems: list[str]) -> int:
         Name of the option.
     text : str
         What was given.
-    problems : list of str
+    problems : Problems
         Takes what is wrong.
     """
-    if text.isascii() and text.isdigit() and len(text) < 9 and int(text) > 0:
-        return int(text)
-    problems.append(f"{option}: got {text!r:.60}; allowed: a whole number from 1 to 99999999")
+    with problems.after(f"{option}: "):
+        return whole_number(text, 1, 99_999_999)
     return 1

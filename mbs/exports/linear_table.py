@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.exports.target import BEARING_AXES, Target, origin
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.outputs import Output, check_outputs, write_text
@@ -25,10 +25,6 @@ from mbs.analyses.bearing_point import RING, ring_at_rest
 from mbs.analyses.film_errors import film_error
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.contact_report import axes_left
-from mbs.commands.one_bearing.cylindrical import CYLINDERS
-from mbs.commands.one_bearing.family import Request
-from mbs.commands.one_bearing.request import read_request
-from mbs.commands.one_bearing.shared import read_values
 from mbs.exports.linear_bearing import Format, LinearBearing
 from mbs.linearised.bands import law_bands
 from mbs.linearised.dynamic import element_dynamic_stiffness
@@ -36,6 +32,10 @@ from mbs.linearised.validity import FilmError
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.relaxation import DEFAULT_FILMS, Films
+from mbs.one_bearing.cylindrical import CYLINDERS
+from mbs.one_bearing.family import Request
+from mbs.one_bearing.request import read_request
+from mbs.one_bearing.shared import read_values
 from mbs.scene.fields import FORCE, MICROMETRE
 
 HERTZ = Display("Hz")
@@ -253,14 +253,12 @@ def _relative_bands(balance: Equilibrium, error: FilmError | None) -> FloatArray
 
 def _read(path: Path, arguments: argparse.Namespace) -> tuple[Request, tuple[float, ...], float]:
     """Read the options with every problem: the request of `mbs bearing`, frequencies [Hz], cage angle [rad]."""
-    problems: list[str] = []
+    problems = Problems()
     frequencies = read_values("--frequency", arguments.frequency or [["0 Hz"]], "Hz", FREQUENCIES, HERTZ, problems)
     angle = 0.0
     if arguments.start_angle is not None:
-        try:
+        with problems.after("--start-angle: "):
             angle = quantity(arguments.start_angle, "rad")
-        except InputError as error:
-            problems += [f"--start-angle: {problem}" for problem in error.problems]
     if arguments.films not in _FILMS:
         problems.append(f"--films: got {arguments.films!r:.60}; allowed: {', '.join(_FILMS)}")
     problems += [
@@ -281,12 +279,9 @@ def _read(path: Path, arguments: argparse.Namespace) -> tuple[Request, tuple[flo
             "speed": arguments.speed or [],
         }
     )
-    try:
+    with problems:
         request = read_request(bearing_arguments, CYLINDERS)
-    except InputError as error:
-        problems += error.problems
-    if problems:
-        raise InputError(tuple(dict.fromkeys(problems)))
+    problems.check()
     return request, frequencies, angle
 
 

@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import Problems
 from ehdmaps.outputs import Kind, has_mark
 from mbs.exports.linear_bearing import Format, LinearBearing, refuse_speeds, whole
 from mbs.exports.linear_table import target
@@ -34,13 +34,12 @@ def _add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def _text(bearing: LinearBearing, header: tuple[str, ...], arguments: argparse.Namespace) -> str:
     """Write the bulk data."""
-    problems: list[str] = []
+    problems = Problems()
     refuse_speeds(bearing, problems)
     node = whole("--node", arguments.node, problems)
     outer = None if arguments.outer_node is None else whole("--outer-node", arguments.outer_node, problems)
     first = whole("--first-id", arguments.first_id, problems)
-    if problems:
-        raise InputError(problems)
+    problems.check()
     if bearing.axial and bearing.frequencies.size == 1:
         return _matrices(bearing, header, node, outer, first)
     angle = _principal(bearing.stiffness[0, 0])

@@ -15,8 +15,9 @@ import re
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import Problems
 from ehdmaps.outputs import Kind, has_mark
+from ehdmaps.units import whole_number
 from mbs.exports.linear_bearing import Format, LinearBearing
 from mbs.exports.linear_table import target
 
@@ -52,24 +53,22 @@ def _add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def _text(bearing: LinearBearing, header: tuple[str, ...], arguments: argparse.Namespace) -> str:
     """Write the element."""
-    problems = []
+    problems = Problems()
     if arguments.ross not in _VERSIONS:
         problems.append(f"--ross: got {arguments.ross!r:.60}; allowed: {', '.join(_VERSIONS)}")
-    node = arguments.node
-    if not (node.isascii() and node.isdigit() and len(node) < 7):
-        problems.append(f"--node: got {node!r:.60}; allowed: a whole number from 0 to 999999")
+    with problems.after("--node: "):
+        node = whole_number(arguments.node, 0, 999_999)
     if arguments.ross == "2" and bearing.frequencies.size > 1 and bearing.speeds.size > 1:
         problems.append(
             f"--frequency: got {bearing.frequencies.size} values for {bearing.speeds.size} speeds; ROSS 2 takes one of "
             "both; allowed: one frequency, one speed, or --ross 3"
         )
-    if problems:
-        raise InputError(problems)
+    problems.check()
     name = re.sub(r"[^A-Za-z0-9]+", "_", bearing.name).strip("_") or "bearing"
     axes = _axes(bearing, arguments.ross)
     notes = (*_NOTES, _AT_FREQUENCY) if arguments.ross == "2" and bearing.frequencies.size > 1 else _NOTES
     lines = [f"# {line}" for line in (*header, *notes, *bearing.left_out(axial_terms=True))]
-    lines += ["", f"[BearingElement_{name}]", f"n = {int(node)}", f'tag = "{name} at {int(node)}"', "scale_factor = 1"]
+    lines += ["", f"[BearingElement_{name}]", f"n = {node}", f'tag = "{name} at {node}"', "scale_factor = 1"]
     lines += [f"{key} = {_array(values)}" for key, values in axes.items()]
     shape = [axis.size for axis in axes.values()]
     for letter, matrix in (("k", bearing.stiffness), ("c", bearing.damping)):

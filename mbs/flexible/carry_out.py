@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.arrays import FloatArray, IntArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.inputs import check_input
 from ehdmaps.outputs import Kind, cache_folder, others_may_write, own_folder
 from ehdmaps.provenance import code_hash
@@ -98,14 +98,12 @@ def reduce_model(
     AnalysisError
         If the modes or static shapes are not found.
     """
-    problems: list[str] = []
+    problems = Problems()
 
     def interface(name: str, planned: PlannedInterface) -> Interface | None:
-        try:
+        with problems:
             return _interface(planned, model, name)
-        except InputError as error:
-            problems.extend(error.problems)
-            return None
+        return None
 
     interfaces = {name: interface(name, planned) for name, planned in plan.interfaces.items()}
     points: dict[str, Point | None] = {

@@ -24,7 +24,7 @@ import numpy as np
 from scipy import sparse
 
 from ehdmaps.arrays import IntArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.inputs import first_bytes
 from ehdmaps.units import short
 from mbs.flexible.finite_elements import MOST_FREEDOMS, TOO_MANY, FiniteElementModel, NodePositions, named
@@ -379,7 +379,7 @@ def read_dofs(path: Path) -> tuple[IntArray, IntArray]:
 def check_deck(path: Path) -> None:
     """Raise InputError if a deck has constraints that make its matrices unreadable: see the head of this module."""
     check_file(path)
-    wrong = []
+    wrong = Problems()
     with path.open(encoding="utf-8", errors="replace") as file:
         for number, line in enumerate(file, start=1):
             if line.startswith("*") and not line.startswith("**"):
@@ -389,5 +389,4 @@ def check_deck(path: Path) -> None:
                         f"{path}, line {number}: got *{keyword}; allowed: solid elements, fixed nodes, ties; "
                         "interfaces follow by a spider of this program instead"
                     )
-    if wrong:
-        raise InputError(wrong)
+    wrong.check()

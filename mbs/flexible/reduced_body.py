@@ -10,7 +10,7 @@ import numpy as np
 from scipy.linalg import eigh
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.units import quantity
 from mbs.frozen import frozen
 from mbs.model.body import Body, Frame, Skin
@@ -114,7 +114,7 @@ class ReducedBody:
         object.__setattr__(self, "frames", frozen(self.frames))
         object.__setattr__(self, "attributes", frozen(self.attributes))
         size = self.size
-        problems = []
+        problems = Problems()
         if not 1 <= size <= MOST_COORDINATES:
             problems.append(f"reduced body, coordinates: got {size}; allowed: 1 to {MOST_COORDINATES}")
         if len(set(self.coordinates)) < size:
@@ -148,10 +148,8 @@ class ReducedBody:
                     f"reduced body, frame {name!r}: got values that are no finite numbers; allowed: finite ones"
                 )
         problems += [] if self.skin is None else _skin_problems(self.skin, size)
-        if not problems:
-            problems = self._matrix_problems()
-        if problems:
-            raise InputError(problems)
+        problems += [] if problems else self._matrix_problems()
+        problems.check()
 
     @property
     def size(self) -> int:

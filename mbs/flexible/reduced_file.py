@@ -22,7 +22,7 @@ import numpy as np
 import xarray as xr
 
 from ehdmaps.arrays import variable
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems, problems_after
 from ehdmaps.netcdf_structure import structure_problem
 from ehdmaps.outputs import MADE_AS, Kind, root_attributes, written_aside
 from mbs.flexible.plan import REDUCED_SUFFIXES, check_reduced, check_reduced_suffix
@@ -114,10 +114,8 @@ def read_reduced(path: Path) -> ReducedBody:
     """
     check_reduced(path)
     given = _npz(path) if path.suffix == ".npz" else _netcdf(path)
-    try:
+    with problems_after(f"{path}: "):
         return _body(given)
-    except InputError as error:
-        raise InputError([f"{path}: {problem}" for problem in error.problems]) from error
 
 
 def _arrays(reduced: ReducedBody) -> dict[str, Any]:
@@ -252,11 +250,11 @@ def _body(given: Mapping[str, Any]) -> ReducedBody:
     names = {key: np.asarray(given[key]) for key in ("coordinates", "units", "frames")}
     held = ("mass", "stiffness", "positions", "transforms", *((_REST,) if _REST in given else ()))
     numbers = {key: np.asarray(given[key]) for key in held}
-    problems = [
+    problems = Problems(
         f"{key}: got {value.ndim} dimensions of {value.dtype}; allowed: a list of at most {MOST_FRAMES} texts"
         for key, value in names.items()
         if value.ndim != 1 or value.size > MOST_FRAMES or not all(isinstance(word, str) for word in value.tolist())
-    ]
+    )
     problems += [
         f"{key}: got {value.dtype}; allowed: real numbers"
         for key, value in numbers.items()
@@ -265,7 +263,7 @@ def _body(given: Mapping[str, Any]) -> ReducedBody:
     if not problems:
         frames, size = names["frames"].size, names["coordinates"].size
         expected = {"positions": (frames, 3), "transforms": (frames, 6, size)}
-        problems = [
+        problems += [
             f"{key}: got shape {numbers[key].shape}; allowed: {shape}, for {frames} frames and {size} coordinates"
             for key, shape in expected.items()
             if numbers[key].shape != shape
@@ -285,8 +283,7 @@ def _body(given: Mapping[str, Any]) -> ReducedBody:
     texts = np.asarray(given.get(_OPTIONAL, np.zeros((0, 2), dtype=np.str_)))
     if texts.ndim != 2 or texts.shape[1] != 2 or texts.dtype.kind not in "U":
         problems.append(f"attributes: got shape {texts.shape} of {texts.dtype}; allowed: pairs of texts")
-    if problems:
-        raise InputError(problems)
+    problems.check()
     places = zip(numbers["positions"].astype(np.float64), numbers["transforms"].astype(np.float64), strict=True)
     return ReducedBody(
         mass=numbers["mass"].astype(np.float64),

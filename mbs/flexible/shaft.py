@@ -19,7 +19,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve, eigh
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, problems_after
 from mbs.flexible.beam import CrossSection, element_gyroscopic, element_mass, element_stiffness
 from mbs.flexible.reduced_body import modal_damping
 from mbs.flexible.shaft_parts import GROUPS, Disc, Section, divide, shaft_problems
@@ -293,7 +293,7 @@ def flexible_shaft(
     problems = shaft_problems(sections, discs, freedoms, position, frames, spin, largest_element, cutoff, damping_ratio)
     if problems:
         raise InputError([f"shaft {name!r}, {problem}" for problem in problems])
-    try:
+    with problems_after(f"shaft {name!r}, "):
         model = shaft_model(sections, discs, freedoms, list(frames.values()), largest_element, cutoff)
         nodes = {key: model.node(place) for key, place in frames.items()}
         if cutoff is None:
@@ -305,8 +305,6 @@ def flexible_shaft(
             mass, gyroscopic, stiffness, basis = reduced(model, kept, cutoff)
             rest = left_out(model, kept, stiffness, basis)
         damping = modal_damping(mass, stiffness, damping_ratio)
-    except InputError as error:
-        raise InputError([f"shaft {name!r}, {problem}" for problem in error.problems]) from error
     labels = {node: key for key, node in reversed(nodes.items())}
     own = [(labels.get(node, f"node {node + 1}"), freedom) for node in kept for freedom in freedoms]
     modes = range(1, len(mass) - len(own) + 1)

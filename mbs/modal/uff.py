@@ -28,7 +28,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError, Problems
+from ehdmaps.errors import InputError, Problems, problems_after
 from ehdmaps.extras import needs
 from ehdmaps.inputs import check_input
 from ehdmaps.outputs import MARK, Kind, has_mark, written_aside
@@ -117,11 +117,9 @@ def read_uff(path: Path) -> Measurement:
         With everything that is wrong about it.
     """
     functions = _functions(path, (TIME, RESPONSE, COHERENCE))
-    try:
+    with problems_after(f"{path}: "):
         hits = _hits([entry for entry in functions.usable if entry["func_type"] == TIME], functions.factors)
         responses = _responses(functions.usable, functions.factors)
-    except InputError as error:
-        raise InputError([f"{path}: {problem}" for problem in error.problems]) from error
     return Measurement(functions.title, hits, responses, tuple(functions.notes))
 
 

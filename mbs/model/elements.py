@@ -296,6 +296,11 @@ class OnRings(ElementDefaults):
         return "roller"
 
     @property
+    def count(self) -> int:
+        """Number of its rolling elements that a cage carries past a place in a turn; 0 where none are known."""
+        return 0
+
+    @property
     def relaxes(self) -> bool:
         """Sign of films with memory."""
         return False

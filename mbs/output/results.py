@@ -350,21 +350,13 @@ def statics_dataset(
         from mbs.bearings.contact_report import TRACTION  # there where losses are
 
         known = "films only; none of laws without rolling forces"
-        variables["rolling_torque"] = variable(
-            "bearing", np.array([loss.torque for loss in losses]), "N m", f"torque that rolling takes; {known}"
-        )
-        variables["rolling_power"] = variable(
-            "bearing",
-            np.array([loss.total for loss in losses]),
-            "W",
-            f"power that the films of all rollers or balls take; {known}",
-        )
-        variables["sliding_torque"] = variable(
-            "bearing",
-            np.array([loss.sliding_torque for loss in losses]),
-            "N m",
-            f"torque that drilling of balls and ends of rollers at ribs take, at a traction of {TRACTION:g}",
-        )
+        ends = f"torque that drilling of balls and ends of rollers at ribs take, at a traction of {TRACTION:g}"
+        for name, key, unit, words in (
+            ("rolling_torque", "torque", "N m", f"torque that rolling takes; {known}"),
+            ("rolling_power", "total", "W", f"power that the films of all rollers or balls take; {known}"),
+            ("sliding_torque", "sliding_torque", "N m", ends),
+        ):
+            variables[name] = variable("bearing", np.array([getattr(loss, key) for loss in losses]), unit, words)
     attributes = {**_operation(balance), "warnings": "\n".join(warnings)}
     return xr.Dataset(variables, coords={**_coordinates(balance.system), **coordinates}, attrs=attributes)
 
@@ -393,19 +385,22 @@ def modes_dataset(found: Modes, balance: Equilibrium) -> xr.Dataset:
         for name, part in (("real", found.shapes.real), ("imaginary", found.shapes.imag))
     )
     none = np.full(found.frequency.shape, np.nan)
-    frequency_band, damping_band = (none, none) if found.bands is None else found.bands[:2]
     film_share = 0.0 if found.bands is None else found.bands.film_share
-    frequency_law, damping_law = (none, none) if found.film_law is None else found.film_law
-    frequency_rest, damping_rest = (none, none) if found.reduction is None else found.reduction
+    beside = {
+        f"{name}_{kind}": variable("mode", none if parts is None else parts[k], unit, f"{words} the {of}")
+        for kind, parts, words in (
+            ("error", found.bands, BAND),
+            ("film_law", found.film_law, f"{LEFT_OUT} of"),
+            ("reduction", found.reduction, f"{REDUCED} of"),
+        )
+        for k, (name, unit, of) in enumerate(
+            (("frequency", "Hz", "frequency"), ("damping_ratio", "1", "damping ratio"))
+        )
+    }
     variables = {
         "frequency": variable("mode", found.frequency, "Hz", "|eigenvalue|/(2 pi)"),
         "damping_ratio": variable("mode", found.damping_ratio, "1", "damping ratio"),
-        "frequency_error": variable("mode", frequency_band, "Hz", f"{BAND} the frequency"),
-        "damping_ratio_error": variable("mode", damping_band, "1", f"{BAND} the damping ratio"),
-        "frequency_film_law": variable("mode", frequency_law, "Hz", f"{LEFT_OUT} of the frequency"),
-        "damping_ratio_film_law": variable("mode", damping_law, "1", f"{LEFT_OUT} of the damping ratio"),
-        "frequency_reduction": variable("mode", frequency_rest, "Hz", f"{REDUCED} of the frequency"),
-        "damping_ratio_reduction": variable("mode", damping_rest, "1", f"{REDUCED} of the damping ratio"),
+        **beside,
         "eigenvalue_real": variable("mode", found.eigenvalues.real, "1/s", "decay"),
         "eigenvalue_imaginary": variable("mode", found.eigenvalues.imag, "rad/s", "damped frequency"),
         "energy_share": variable(("part", "mode"), found.shares, "1", "part of the strain energy of the mode"),

@@ -566,7 +566,7 @@ def _dry_model(scene: Scene, settings: PlanSettings) -> Model:
         problems.append(f'got no [lubricant], which {why}; add the table to the scene, such as name = "FVA3"')
     named = [problem if problem.startswith("--") else f"{scene.name}: {problem}" for problem in problems]
     if named or model is None:
-        raise InputError(tuple(dict.fromkeys(named)))
+        raise InputError(named)
     return model
 
 

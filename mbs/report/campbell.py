@@ -21,7 +21,6 @@ from ehdmaps.report.chart import GREY, WIDE, Chart, Curve, Points, figure, numbe
 from ehdmaps.report.page import Markup, joined, table, tag
 from ehdmaps.units import RPM
 from mbs.analyses.modes import ModesResult
-from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.linearised.sweep_result import Sweep
 from mbs.output.band_text import about_lines, bounds_text, lost_lines, share_words, term_words, value_text
 from mbs.output.files import RESULT
@@ -399,14 +398,8 @@ def named_orders(model: Model) -> list[tuple[float, str]]:
         spins = getattr(element, "inner_spin", 0.0), getattr(element, "outer_spin", 0.0)
         passing = passing if 0.0 in spins else "passing"
         add(one.order, f"{passing} {element.name}")
-        add(one.order / _count(element), f"cage {element.name}")
+        add(one.order / element.count, f"cage {element.name}")
     return [(order, _names(names)) for order, names in sorted(found.items())]
-
-
-def _count(element: Any) -> int:
-    """Number of rolling elements of a bearing."""
-    located = isinstance(element, LocatingElement)
-    return int(element.force.angles.size if located else element.bearing.geometry.rollers)
 
 
 def _names(names: Sequence[str]) -> str:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, cast
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError, Problems
+from ehdmaps.errors import InputError, Problems, problems_after
 from ehdmaps.physics.heat import heat_in_force
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
@@ -97,14 +97,12 @@ def build_body(spec: BodySpec) -> Body:
         return _built(_ByContent(repr(spec), spec))
     from mbs.scene.flexible import build_flexible, content_of
 
-    try:
+    with problems_after(f"flexible body {spec.name!r}: "):
         content = content_of(spec.source)
         if content is None:
             return build_flexible(spec)
         rest = repr(dataclasses.replace(spec, source=Path()))
         return _built(_ByContent(f"{content} {rest}", spec))
-    except InputError as error:
-        raise InputError([f"flexible body {spec.name!r}: {problem}" for problem in error.problems]) from error
 
 
 @dataclass(frozen=True)
@@ -355,17 +353,15 @@ def assemble(
     ('film table', 8)
     """
     chosen, maps = law_in_force(law, _opened(emap), scene, inlet_heat)
-    problems: list[str] = []
+    problems = Problems()
     if clearance is not None:
-        try:
+        with problems.after("--clearance: "):
             scene = with_clearance(scene, clearance)
-        except InputError as error:
-            problems += [f"--clearance: {problem}" for problem in error.problems]
     if supply is not None:
         scene = with_supply(scene, supply)
     laws = ContactLaws(chosen, scene, maps, films, heat_in_force(inlet_heat, scene.lubricant))
     wrong_law = laws.problems()
-    problems = [*wrong_law, *problems]
+    problems[:0] = wrong_law
     try:
         bodies = build_bodies(with_places(scene.bodies, scene.unbalances))
     except InputError as error:
@@ -377,15 +373,14 @@ def assemble(
     problems += found
     parts = [part for group in built.values() for part in group]
     own_bodies = [body for part in parts for body in part.bodies]
-    try:
+    wrong_places = _place_problems(places, scene)
+    with problems:
         elements = [part.element for part in parts]
         system = System((*bodies, *own_bodies), scene.springs, scene.loads, elements, turning, scene.gravity)
-        problems += _place_problems(places, scene) or _idle_problems(system, scene, turning)
+        problems += [] if wrong_places else _idle_problems(system, scene, turning)
         problems += axial_problems(system, scene.gears, Operation(scene.speed))
-    except InputError as error:
-        problems += [*error.problems, *_place_problems(places, scene)]
-    if problems:
-        raise InputError(problems)
+    problems += wrong_places
+    problems.check()
     bearings = tuple(_shown(built, "bearings", BearingElement))
     words = [laws.words] if bearings else []
     if scene.located:
@@ -488,23 +483,20 @@ def choice_attributes(models: Sequence[tuple[str, Model]]) -> dict[str, str]:
 def _elements(scene: Scene, surroundings: Surroundings, *, may_build: bool) -> tuple[dict[str, list[Built]], list[str]]:
     """Build the machine elements by the key of their kind, and say what is wrong about them."""
     built: dict[str, list[Built]] = {kind.key: [] for kind in kinds.KINDS}
-    problems = [
+    problems = Problems(
         f"scene, elements: got {entry.name!r} of class {type(entry).__name__}; allowed: "
         f"{', '.join(kind.spec.__name__ for kind in kinds.KINDS)}"
         for entry in scene.elements
         if kinds.kind_of(entry) is None
-    ]
+    )
     for kind in kinds.KINDS:
         for spec in scene.elements:
             if kinds.kind_of(spec) is not kind:
                 continue
-            found = _problems(kind, spec, surroundings)
+            problems += (found := _problems(kind, spec, surroundings))
             if not found and may_build:
-                try:
+                with problems:
                     built[kind.key].append(kind.build(spec, surroundings))
-                except InputError as error:
-                    found += error.problems
-            problems += found
     return built, problems
 
 

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from ehdmaps.choices import ROUGHNESS, STRUCTURE, SUPPLY, Choice, one_of
 from ehdmaps.errors import InputError, Problems
-from ehdmaps.units import RPM, TEMPERATURE, Display, quantity
+from ehdmaps.units import RPM, TEMPERATURE, Display, quantity, quantity_between, whole_number
 from mbs.model.relaxation import DEFAULT_FILMS, FILM_WORDS
 from mbs.scene.fields import DEGREE, HERTZ, MICROMETRE
 from mbs.scene.map_set import TABLE_LAW
@@ -145,14 +145,7 @@ class SceneChoice(Choice[Subject]):
 
 def _between(unit: str, low: float, high: float, display: Display) -> Callable[[str], float]:
     """A reader of a quantity."""
-
-    def read(text: str) -> float:
-        value = quantity(text, unit)
-        if not low <= value <= high:
-            raise InputError(f"got {text!r:.60}; allowed: {display.text(low)} to {display.text(high)}")
-        return value
-
-    return read
+    return lambda text: quantity_between(text, unit, low, high, display)
 
 
 def _either_way(unit: str, most: float, words: str) -> Callable[[str], float]:
@@ -185,9 +178,7 @@ def _times(value: float) -> str:
 
 def _slices(text: str) -> int:
     """Read a number of slices."""
-    if not (text.isdecimal() and len(text) < 10 and 1 <= int(text) <= MOST_SLICES):
-        raise InputError(f"got {text!r:.40}; allowed: a whole number from 1 to {MOST_SLICES}")
-    return int(text)
+    return whole_number(text, 1, MOST_SLICES)
 
 
 def _temperature(text: str) -> float:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, FilmConditions, OilSupply
@@ -267,14 +267,11 @@ def dry_words(law: str) -> str:
 
 def table_problems(law: str) -> list[str]:
     """Problems with the file of a law table:FILE; nothing for other laws."""
-    path = table_path(law)
-    if path is None:
-        return []
-    try:
-        read_law(path, 1.0)
-    except InputError as error:
-        return [f"--law: {line}" for line in error.problems]
-    return []
+    problems = Problems()
+    if (path := table_path(law)) is not None:
+        with problems.after("--law: "):
+            read_law(path, 1.0)
+    return problems
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -38,7 +38,6 @@ LARGEST = 1e15
 """Largest entry of a stiffness or damping that is read."""
 
 _TRANSLATIONS = FREEDOMS[:3]
-Built = TypeVar("Built")
 
 
 def cylinder(table: Table) -> Inertia | None:
@@ -83,10 +82,7 @@ def solid_cylinder(
     density : float
         [kg/m3].
     """
-    return built(
-        table,
-        lambda: Inertia.cylinder(begin, end, diameter, bore or 0.0, density),
-    )
+    return table.made(lambda: Inertia.cylinder(begin, end, diameter, bore or 0.0, density))
 
 
 def text(section: Table, key: str, required: bool = False) -> str | None:
@@ -349,16 +345,6 @@ def real_numbers(value: object) -> list[float] | None:
     except OverflowError:  # a whole number of any length stands in a TOML file
         return None
     return numbers if all(map(math.isfinite, numbers)) else None
-
-
-def built(section: Table, make: Callable[[], Built]) -> Built | None:
-    """Make a value; note its problems under the table's name."""
-    try:
-        return make()
-    except InputError as error:
-        for problem in error.problems:
-            section.note("", problem)
-    return None
 
 
 _COLUMN = re.compile(r"\s*([a-z ]+?)\s*\[([^\[\]]*)\]\s*")

@@ -81,7 +81,7 @@ def read_flexible(section: Table, name: str, folder: Path | None) -> FlexibleSpe
                 section.note(key, "stands beside reduced, which has all of it; allowed: one of the two")
         if source is not None:
             path = source
-            fields.built(section, lambda: check_reduced(path))
+            section.made(lambda: check_reduced(path))
     else:
         source = read_reduction(section, folder, "reduced, or matrices = { format, stiffness, mass, dofs }")
         for problem in source.file_problems() if source is not None else ():

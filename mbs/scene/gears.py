@@ -73,8 +73,7 @@ def read_gears(section: Table, name: str) -> GearPair | None:
         or backlash is None
     ):
         return None
-    return fields.built(
-        section,
+    return section.made(
         lambda: GearPair(
             name=name,
             on=on,
@@ -193,7 +192,7 @@ def _relief(section: Table) -> Relief | None:
     lengths = _quantities(section, "relief_length", "m", 1.0, LENGTH)
     if lengths and "tip_relief" not in section:
         section.note("relief_length", "stands without tip_relief; allowed: with it")
-    return fields.built(section, lambda: Relief(amounts, lengths)) if amounts else None
+    return section.made(lambda: Relief(amounts, lengths)) if amounts else None
 
 
 def read_mesh_input(section: Table, name: str, on: str) -> MeshInput:

@@ -87,23 +87,17 @@ KINDS = (
         problems=matrix_problems,
         build=build_matrices,
     ),
-    ElementKind(
-        key="",
-        word="ball bearing",
-        spec=BallSpec,
-        read=bearings.read_bearing,
-        places=lambda spec: (spec.inner, spec.outer),
-        problems=_later("mbs.scene.locating.element", "located_problems"),
-        build=_later("mbs.scene.locating.element", "build_located"),
-    ),
-    ElementKind(
-        key="",
-        word="tapered roller bearing",
-        spec=TaperedSpec,
-        read=bearings.read_bearing,
-        places=lambda spec: (spec.inner, spec.outer),
-        problems=_later("mbs.scene.locating.element", "located_problems"),
-        build=_later("mbs.scene.locating.element", "build_located"),
+    *(
+        ElementKind(
+            key="",
+            word=word,
+            spec=spec,
+            read=bearings.read_bearing,
+            places=lambda spec: (spec.inner, spec.outer),
+            problems=_later("mbs.scene.locating.element", "located_problems"),
+            build=_later("mbs.scene.locating.element", "build_located"),
+        )
+        for word, spec in (("ball bearing", BallSpec), ("tapered roller bearing", TaperedSpec))
     ),
 )
 """All kinds, in the order of the elements of a system."""

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from importlib import resources
 from os import PathLike, fspath
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
@@ -25,7 +26,7 @@ from mbs.model.drive import Drive, DrivenSpeed, TorqueCurve
 from mbs.model.elements import MESH, Input, Load, Sensor, Spring
 from mbs.model.profiles import Constant, Course, Harmonic, LoadProfile, SpeedProfile
 from mbs.scene import fields, kinds
-from mbs.scene.fields import DEGREE, FORCE, HERTZ, LONGEST_FILE, MICROMETRE, MILLISECOND, MOMENT, Built
+from mbs.scene.fields import DEGREE, FORCE, HERTZ, LONGEST_FILE, MICROMETRE, MILLISECOND, MOMENT
 from mbs.scene.gears import read_mesh_input, spins_by_teeth
 from mbs.scene.matrices import MatrixSpec, read_spring
 from mbs.scene.scene import Scene
@@ -48,6 +49,8 @@ from mbs.unknowns.statement import taken_out
 
 MOST_POINTS = 1000
 """Points of a torque over speed."""
+
+_Built = TypeVar("_Built")
 
 _LARGEST = 1e9
 """Largest torque [N m]."""
@@ -74,7 +77,7 @@ def read_drive(section: Table) -> Drive | None:
     until = section.quantity("motor_until", "s", 1e-9, 1e6, Display("s"))
     if inertia is None or motor is None or load is None:
         return None
-    return fields.built(section, lambda: Drive(inertia, motor, load, math.inf if until is None else until))
+    return section.made(lambda: Drive(inertia, motor, load, math.inf if until is None else until))
 
 
 def _read_torque(section: Table, key: str, required: str, lowest: float = 0.0) -> TorqueCurve | None:
@@ -118,7 +121,7 @@ def read_sweep(section: Table) -> SweepRange | None:
     points = section.integer("points", 2, MOST_SPEEDS, required=True)
     if begin is None or end is None or points is None:
         return None
-    return fields.built(section, lambda: SweepRange(begin, end, points))
+    return section.made(lambda: SweepRange(begin, end, points))
 
 
 def read_campbell(section: Table) -> CampbellSettings | None:
@@ -306,7 +309,7 @@ class _Reader:
         tables = [entry for key in ("bodies", "shafts") for entry in self._top.get(key) or []]
         return {str(entry.get("name")) for entry in tables if isinstance(entry, dict) and "spin" in entry}
 
-    def _all(self, key: str, read: Callable[[Table, str], Built | None]) -> list[Built]:
+    def _all(self, key: str, read: Callable[[Table, str], _Built | None]) -> list[_Built]:
         """Read each table of a list of tables; the name of each comes first."""
         entries = self._top.get(key)
         if key not in self._top:
@@ -351,8 +354,7 @@ class _Reader:
                 frames[key] = place or (0.0, 0.0, 0.0)
         if len(section.problems) > before or freedoms is None:
             return None
-        return fields.built(
-            section,
+        return section.made(
             lambda: RigidSpec(name, parts, freedoms, position or ORIGIN, frames, spin or 0.0),
         )
 
@@ -384,7 +386,7 @@ class _Reader:
                     "mass", f"stands without its companions; allowed: {', '.join(keys)} together, or mass alone"
                 )
             elif mass is not None and not (moments and (polar is None or transverse is None)):
-                found.append(fields.built(section, lambda: Inertia(mass, polar or 0.0, transverse or 0.0)))
+                found.append(section.made(lambda: Inertia(mass, polar or 0.0, transverse or 0.0)))
         elif "cylinders" not in section:
             section.note("cylinders", f"missing; allowed: cylinders, or {', '.join(keys)}, or both")
         return [part for part in found if part is not None]
@@ -427,7 +429,7 @@ class _Reader:
                 "times",
                 "jumps at 0 s, from whose loads a run begins at rest; allowed: a jump later; delete the first time",
             )
-        return fields.built(section, lambda: Course(course, tuple(numbers))) or Constant()
+        return section.made(lambda: Course(course, tuple(numbers))) or Constant()
 
     def _input(self, section: Table, name: str) -> Input | None:
         """Read an input of the linear analysis."""
@@ -485,8 +487,7 @@ class _Reader:
         self._close(section)
         if step is None or (points is None and (begin is None or duration is None or (end is None and drive is None))):
             return None
-        settings = fields.built(
-            section,
+        settings = section.made(
             lambda: Settings(
                 step,
                 step if sample is None else sample,
@@ -520,4 +521,4 @@ class _Reader:
         known = [(time, speed) for time, speed in zip(at, found, strict=True) if time is not None and speed is not None]
         if len(known) < len(times):
             return None
-        return fields.built(section, lambda: SpeedProfile(Course(*map(tuple, zip(*known, strict=True)))))
+        return section.made(lambda: SpeedProfile(Course(*map(tuple, zip(*known, strict=True)))))

@@ -12,12 +12,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ehdmaps.errors import EhdmapsError, InputError
+from ehdmaps.errors import EhdmapsError, Problems
 from mbs.bearings.laws import FORMULAS
 from mbs.model.relaxation import Films
 from mbs.scene.map_set import TABLE_LAW
 
 if TYPE_CHECKING:
+    from ehdmaps.maps.emap import EHDMap
     from ehdmaps.physics.oil_supply import OilSupply
     from mbs.scene.assembly import Model
     from mbs.scene.map_set import MapSet
@@ -129,7 +130,27 @@ def map_law(maps: MapSet, words: str = "") -> LawChoice:
     return LawChoice(f"{maps.label} {words}".rstrip(), "map", maps)
 
 
-def opened_maps(paths: Sequence[str], scene: Scene, problems: list[str]) -> list[LawChoice]:
+def opened_map(path: str, problems: Problems) -> EHDMap | None:
+    """A map of a command; None where a problem was noted.
+
+    Parameters
+    ----------
+    path : str
+        File of a map, or a job.
+    problems : Problems
+        What is wrong is appended.
+    """
+    from ehdmaps.jobs.show.opening import open_given
+
+    try:
+        with problems:
+            return open_given(path)
+    except EhdmapsError as error:
+        problems += [f"--map: {line}" for line in str(error).splitlines()]
+    return None
+
+
+def opened_maps(paths: Sequence[str], scene: Scene, problems: Problems) -> list[LawChoice]:
     """The laws of maps that are given together: one for each set, see `mbs.scene.map_set`.
 
     Parameters
@@ -138,24 +159,14 @@ def opened_maps(paths: Sequence[str], scene: Scene, problems: list[str]) -> list
         Files of maps, or jobs.
     scene : Scene
         Scene with the bearings.
-    problems : list of str
+    problems : Problems
         What is wrong is appended.
     """
-    from ehdmaps.jobs.show.opening import open_given
     from mbs.scene.map_set import map_sets
 
-    maps = []
-    for path in paths:
-        try:
-            maps.append((Path(path).stem, open_given(path)))
-        except InputError as error:
-            problems += error.problems
-        except EhdmapsError as error:
-            problems += [f"--map: {line}" for line in str(error).splitlines()]
-    try:
-        sets = map_sets(maps, scene.bearings)
-    except InputError as error:
-        problems += error.problems
-        return []
-    labels = [one.label for _, one in sets]
-    return [map_law(one, words if labels.count(one.label) > 1 else "") for words, one in sets]
+    opened = [(Path(path).stem, opened_map(path, problems)) for path in paths]
+    with problems:
+        sets = map_sets([(name, emap) for name, emap in opened if emap is not None], scene.bearings)
+        labels = [one.label for _, one in sets]
+        return [map_law(one, words if labels.count(one.label) > 1 else "") for words, one in sets]
+    return []

@@ -224,7 +224,7 @@ def with_places(bodies: Iterable[BodySpec], unbalances: Sequence[Unbalance]) -> 
             continue  # the system says that there is no such body
         index = names.index(entry.on)
         body = changed[index]
-        try:
+        with problems.after(f"unbalance {entry.name!r}: "):
             if entry.name in getattr(body, "frames", {}):
                 raise InputError("the body has a frame of that name; allowed: a name of its own")
             if isinstance(body, RigidSpec):
@@ -234,8 +234,6 @@ def with_places(bodies: Iterable[BodySpec], unbalances: Sequence[Unbalance]) -> 
                 changed[index] = dataclasses.replace(body, frames={**body.frames, entry.name: entry.at})
             else:
                 raise InputError("at: allowed on rigid bodies and shafts; name a frame of the body as `on`")
-        except InputError as error:
-            problems += [f"unbalance {entry.name!r}: {problem}" for problem in error.problems]
     problems.check()
     return tuple(changed)
 
@@ -252,15 +250,13 @@ def turning_loads(
     places : Places
         Places of its bodies.
     """
-    loads, problems = [], []
+    loads, problems = [], Problems()
     entries: list[Unbalance | OrderLoad] = [*unbalances, *excitations]
     for entry in entries:
         word, on = ("unbalance", entry.place) if isinstance(entry, Unbalance) else ("excitation", entry.on)
         if found := places.problem(on):
             problems.append(f"{word} {entry.name!r}: {found}")
             continue
-        try:
+        with problems:
             loads.append(entry.load(places))
-        except InputError as error:
-            problems += error.problems
     return loads, problems

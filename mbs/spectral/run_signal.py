@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.units import written
 
 RPM = 30.0 / np.pi
@@ -50,7 +50,7 @@ class RunSignal:
     signal: FloatArray
 
     def __post_init__(self) -> None:
-        problems = []
+        problems = Problems()
         for name in ("time", "speed", "angle", "signal"):
             try:
                 values = np.ascontiguousarray(getattr(self, name), dtype=np.float64)
@@ -70,9 +70,8 @@ class RunSignal:
                 )
             elif values.shape != np.shape(self.time):
                 problems.append(f"run signal, {name}: got {values.size} samples; allowed: as many as times")
-        problems = problems or self._course_problems()
-        if problems:
-            raise InputError(problems)
+        problems += [] if problems else self._course_problems()
+        problems.check()
         if self.speed.sum() < 0.0:
             object.__setattr__(self, "speed", -self.speed)
             object.__setattr__(self, "angle", -self.angle)

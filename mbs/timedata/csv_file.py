@@ -109,13 +109,10 @@ def read_table(path: Path) -> tuple[list[TimeChannel], FloatArray, FloatArray]:
     problems = Problems()
     channels, factors = [], []
     for column, (name, given) in enumerate(titles, start=1):
-        try:
+        with problems.after(f"{path}, column {column} ({name:.40}): "):
             recorded, unit, factor = read_unit(given, name)
-        except InputError as error:
-            problems += [f"{path}, column {column} ({name:.40}): {line}" for line in error.problems]
-            continue
-        channels.append(TimeChannel(name or f"column {column}", recorded, unit))
-        factors.append(factor)
+            channels.append(TimeChannel(name or f"column {column}", recorded, unit))
+            factors.append(factor)
     problems.check()
     return channels, np.array(factors), values
 

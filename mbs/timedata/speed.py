@@ -19,7 +19,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator, make_lsq_spline
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError, Problems
+from ehdmaps.errors import InputError, Problems, problems_after
 from ehdmaps.units import RPM
 from mbs.timedata.csv_file import read_table
 from mbs.timedata.pulses import FEWEST, counted, rising_flanks
@@ -183,10 +183,8 @@ def _by_tacho(record: TimeRecord, name: str, pulses: float) -> Turned:
             f"{where}: got {flanks.size} pulses between {values.min():.4g} and {values.max():.4g} {channel.unit}; "
             f"allowed: at least {FEWEST}; look at the channel and its range"
         )
-    try:
+    with problems_after(f"{where}: "):
         found = counted(flanks)
-    except InputError as error:
-        raise InputError([f"{where}: {problem}" for problem in error.problems]) from error
     if found.wheel is not None and found.wheel[0] == pulses:
         raise InputError(
             f"{where}: got {pulses:g} pulses a turn of a wheel with {found.wheel[0]} of {found.wheel[1]} teeth; "

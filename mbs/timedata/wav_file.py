@@ -33,7 +33,7 @@ import numpy as np
 from scipy.io import wavfile
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError, Problems
+from ehdmaps.errors import InputError, Problems, problems_after
 from ehdmaps.inputs import check_input, first_bytes, read_text
 from ehdmaps.outputs import MARK, Kind, has_mark, written_aside
 from ehdmaps.units import RPM, closest, short
@@ -152,13 +152,12 @@ def read_wav(path: Path) -> TimeData:
 def _table(path: Path) -> dict[str, Any]:
     """The table beside a sound file."""
     beside = scale_path(path)
+    with problems_after("", "; samples of a sound file have no unit without one"):
+        text = read_text(beside, _LONGEST_TABLE, f"a table of its scale: {_EXAMPLE}")
     try:
-        table = tomllib.loads(read_text(beside, _LONGEST_TABLE, f"a table of its scale: {_EXAMPLE}"))
+        table = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{beside}: {error}; allowed: TOML, such as {_EXAMPLE}") from error
-    except InputError as error:
-        words = "; samples of a sound file have no unit without one"
-        raise InputError([f"{problem}{words}" for problem in error.problems]) from error
     unknown = [key for key in table if key not in _KEYS]
     if unknown:
         raise InputError(
@@ -186,13 +185,10 @@ def _channels(path: Path, table: dict[str, Any]) -> tuple[list[TimeChannel], Flo
         scale = float(full) if isinstance(full, (int, float)) and not isinstance(full, bool) else math.nan
         if not 0.0 < scale <= LARGEST:
             problems.append(f"{where}, full_scale: got {short(full)}; allowed: a number above 0 up to {LARGEST:g}")
-        try:
+        with problems.after(f"{where}, unit: "):
             recorded, si, factor = read_unit(str(unit), str(name))
-        except InputError as error:
-            problems += [f"{where}, unit: {line}" for line in error.problems]
-            continue
-        channels.append(TimeChannel(str(name), recorded, si))
-        factors.append(factor * scale)
+            channels.append(TimeChannel(str(name), recorded, si))
+            factors.append(factor * scale)
     problems.check()
     return channels, np.array(factors)
 

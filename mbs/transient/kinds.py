@@ -14,7 +14,6 @@ from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_block import BALLS
 from mbs.bearings.bearing_block import BEARINGS, ROLLERS
 from mbs.bearings.bearing_element import BearingElement
-from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.bearings.memory_block import MEMORY_BEARINGS, MEMORY_ROLLERS
 from mbs.bearings.roller_element import RollerElement
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
@@ -34,7 +33,7 @@ KINDS: dict[type, Kind] = {
     GearMesh: GEAR_MESHES,
     MatrixElement: MATRICES,
 }
-"""Kind by the class of its elements, of a `LocatingElement` by that of its force.
+"""Kind by the class of its elements, or by what they name as their `kind`: a `LocatingElement` the class of its force.
 
 ``KINDS[Coupling] = COUPLINGS`` adds one.
 """
@@ -46,6 +45,6 @@ WITH_MEMORY: dict[type, Kind] = {BearingElement: MEMORY_BEARINGS, RollerElement:
 
 def kind_of(element: Element) -> Kind | None:
     """Kind of an element in compiled code; None if it has none. A class that inherits from a known one is another."""
-    of = type(element.force if isinstance(element, LocatingElement) else element)
+    of = getattr(element, "kind", type(element))
     kind = (WITH_MEMORY if getattr(element, "relaxes", False) and of in WITH_MEMORY else KINDS).get(of)
     return kind if kind is not None and kind.takes(element) else None

@@ -10,7 +10,7 @@ import dataclasses
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ehdmaps.errors import InputError, closest, short
+from ehdmaps.errors import InputError, Problems, closest, problems_after, short
 from ehdmaps.units import (
     OF,
     OF_OILS,
@@ -93,13 +93,10 @@ def read_statements(text: str) -> tuple[Statement, ...]:
     >>> found.group, found.bearing, found.value, found.tolerance.half_width(20e-6)
     ('clearance', 'drive', 2e-05, 5e-06)
     """
-    problems: list[str] = []
-    found = []
+    problems, found = Problems(), []
     for part in filter(None, map(str.strip, text.split(";"))):
-        try:
+        with problems:
             found.append(_statement(part))
-        except InputError as error:
-            problems += error.problems
     if problems or not found:
         raise InputError(problems or [f"got {short(text)}; allowed: such as 'clearance = 20 um +- 5 um'"])
     return tuple(found)
@@ -121,11 +118,9 @@ def _statement(text: str) -> Statement:
             f"got {short(text)}; allowed: a tolerance alone, {group} = +- {example}; values are stated for "
             f"{' and '.join(_VALUES)}"
         )
-    try:
+    with problems_after(f"{group}: "):
         size = quantity(value, _VALUES[group]) if value else None
         width = read_tolerance(tolerance, group) if tolerance else None
-    except InputError as error:
-        raise InputError([f"{group}: {problem}" for problem in error.problems]) from None
     return Statement(group, bearing, size, width, text)
 
 

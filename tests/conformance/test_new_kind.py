@@ -29,8 +29,8 @@ from tests.conformance.machines import HEAD, TAIL
 STIFFNESS, ANGLE, PADS = 2e8, 0.5, 12
 
 NAMED = {
-    "commands/one_bearing/balls.py",
-    "commands/one_bearing/ribs.py",
+    "one_bearing/balls.py",
+    "one_bearing/ribs.py",
     "exports/exudyn.py",  # a file for another program, of balls alone
     "exports/one_bearing/balls.py",
     "exports/one_bearing/rollers.py",

@@ -13,7 +13,7 @@ import pytest
 import xarray as xr
 
 from mbs import assemble, parse_scene, statics
-from mbs.commands.one_bearing import request
+from mbs.one_bearing import request
 from mbs.unknowns.held_open import held_open
 from tests.cases.commands import check_units, run
 from tests.conformance.machines import KINDS, MIXED

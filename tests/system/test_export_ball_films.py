@@ -24,9 +24,9 @@ from mbs.bearings.balls.films import ball_films
 from mbs.bearings.balls.laws import dry_law
 from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.cli import main
-from mbs.commands.one_bearing.balls import BALL_BEARINGS
-from mbs.commands.one_bearing.files import Export, write_export
 from mbs.model.elements import Operation
+from mbs.one_bearing.balls import BALL_BEARINGS
+from mbs.one_bearing.files import Export, write_export
 from mbs.output.one_bearing.kind import Description
 from tests.cases.ball_runs import driven
 from tests.cases.fmu import FIVE, POSE, Unit, stepped

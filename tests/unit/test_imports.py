@@ -220,7 +220,7 @@ laboratory measures them all, and none imports it."""
 
 SCENES = (
     *("__main__", "analyses", "budget", "cli", "commands", "exports", "imports", "library"),
-    *("identification", "output", "planning", "report", "scene", "unknowns", "vibration"),
+    *("identification", "one_bearing", "output", "planning", "report", "scene", "unknowns", "vibration"),
 )
 """Modules of mbs that plan a scene or are its command line: they may call ehdmaps.jobs; no other module of mbs may
 call them."""
@@ -327,7 +327,7 @@ def test_analyses_know_no_command_line() -> None:
 BELOW = (
     (("scene", "output"), ("mbs.analyses", "mbs.planning", "mbs.report", "mbs.commands", "mbs.cli")),
     (("analyses",), ("mbs.planning", "mbs.report", "mbs.commands", "mbs.cli")),
-    (("planning", "report"), ("mbs.commands", "mbs.cli")),
+    (("planning", "report", "one_bearing", "exports", "exports/one_bearing"), ("mbs.commands", "mbs.cli")),
 )
 """Rooms of mbs, and what of mbs stands above them: no arrow points up there."""
 

@@ -14,7 +14,7 @@ import pytest
 import xarray as xr
 
 from ehdmaps.choices import MAP_CHOICES, ROUGHNESS, STRUCTURE
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import Surface
@@ -169,7 +169,7 @@ class TestChoices:
     def test_what_concerns_films_leaves_a_dry_law_as_it_is(self, emap):
         scene = read_scene("nu308_rigid")
         laws = [LawChoice(name, "map", MapSet([EHDMap(emap.dataset)])) for name in ("one", "two")]
-        problems: list[str] = []
+        problems = Problems()
         subjects = [Subject(scene, law) for law in (*laws, named_law("hertz", scene))]
         found = combinations(subjects, {"films": ["slow"], "supply": [OilSupply.named("grease")]}, problems)
         assert problems == []
@@ -203,16 +203,26 @@ class TestChoices:
         assert ", load-factor 2 x, start-angle 7 deg; assumed:" in line
 
     def test_a_plan_takes_loads_and_temperature(self):
-        problems: list[str] = []
+        problems = Problems()
         scene, clearance = read_dry(given(temperature=["60 degC"], load_factor=["2"], clearance=["20 um"]), problems)
         assert problems == []
         assert (scene.temperature, clearance) == (333.15, 20e-6)
         assert scene.loads[0].force[1] == 2.0 * read_scene("nu308_rigid").loads[0].force[1]
 
     def test_what_is_compared_by_variations_is_given_once(self):
-        problems: list[str] = []
+        problems = Problems()
         read_compared(given(law=["hertz", "hertz:1e-5 s"], temperature=["40 degC", "60 degC"]), problems)
         assert "--temperature: got 2 of them; allowed: one, and others by --vary temperature" in problems
+
+
+def test_the_table_of_a_law_is_not_written_over(tmp_path, capsys):
+    """Nor by files that one command alone writes: it is read, as the map and the scene are."""
+    table = tmp_path / "law.csv"
+    table.write_text("approach [um], load [N/m], damping [N s/m2]\n0, 0, 0\n10, 1e5, 1\n20, 3e5, 1\n", encoding="utf-8")
+    before = table.read_bytes()
+    assert main(["runup", "nu308_rigid", "--law", f"table:{table}", "--signals", str(table)]) == 2
+    assert "which is read; choose another name" in capsys.readouterr().err
+    assert table.read_bytes() == before
 
 
 def test_a_map_with_another_supply_is_a_map(emap, tmp_path):

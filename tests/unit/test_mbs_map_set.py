@@ -12,7 +12,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.bearing import BearingGeometry
@@ -179,7 +179,7 @@ def test_commands_take_several_maps_as_one_case_or_more(tmp_path, formula_maps):
         return argparse.Namespace(scene=str(path), map=list(maps), **texts)
 
     def labels(*maps):
-        problems = []
+        problems = Problems()
         _, laws, _ = read_compared(argparse.Namespace(**{**vars(given(*maps)), "films": None}), problems)
         assert problems == []
         return [law.label for law in laws]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
@@ -169,7 +169,7 @@ def test_one_supply_is_in_the_label_where_it_is_not_flooded(shaft):
         ("aired.toml", None, "formula map, oil air"),
         ("aired.toml", ["flooded"], "formula map"),
     ):
-        problems: list[str] = []
+        problems = Problems()
         asked = argparse.Namespace(scene=name, map=["map.nc"], supply=given, output=None, plot=None)
         _, laws, _ = read_compared(asked, problems)
         assert problems == []

@@ -346,7 +346,7 @@ class TestCases:
             "'kg'",
             "--load-factor: got 'x'",
             "is no folder",
-            "'x' points",
+            "--speed, POINTS: got 'x'",
             "angles: got 'many'",
         ):
             assert words in text

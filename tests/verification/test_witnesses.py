@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mbs.commands.bearing import family_of
-from mbs.commands.one_bearing.request import bands_of, points_of, read_request
+from mbs.one_bearing.request import bands_of, points_of, read_request
 from mbs.scene.choices import OPTIONS
 from tests.cases.witnesses import centre_line, gmn_pairs, iso_16281, measured_films, rows, thin_pairs
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ehdmaps.errors import InputError, Problems
+from ehdmaps.errors import Problems
 from ehdmaps.exports.mat import KIND as MATLAB
 from ehdmaps.exports.mat import ascii_text, write_matlab
 from ehdmaps.jobs.make.points_asked import MADE
@@ -30,7 +30,7 @@ from ehdmaps.jobs.solve.options import Options
 from ehdmaps.outputs import FIGURE, MARK, TABLE, Output, check_outputs, write_figure, write_text
 from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.table.points.films import NUMBERS
-from ehdmaps.units import SPEED, TEMPERATURE, quantity, short
+from ehdmaps.units import SPEED, TEMPERATURE, quantity_between, short
 
 _OF_LINES = (
     *("solver", "workers", "fresh", "fresh_films", "law_tolerance", "keep_cases"),
@@ -118,10 +118,7 @@ def _narrowed(request: PointsRequest, arguments: argparse.Namespace, problems: P
         if text is None:
             continue
         with problems.after(f"--{name}: "):
-            value = quantity(text, unit)
-            if not low <= value <= high:
-                raise InputError(f"got {text!r:.60}; allowed: {display.text(low)} to {display.text(high)}")
-            chosen[field] = (value,)
+            chosen[field] = (quantity_between(text, unit, low, high, display),)
     contact = getattr(arguments, "contact", None)
     if contact not in (None, *SIDES):
         problems.append(f"--contact: got {short(contact)} for point contacts; allowed: {', '.join(SIDES)}")

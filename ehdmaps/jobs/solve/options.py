@@ -14,7 +14,7 @@ from ehdmaps.errors import InputError, Problems, short
 from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, MOST_FREQUENCIES
-from ehdmaps.units import RPM, SPEED, TEMPERATURE, Display, quantity
+from ehdmaps.units import RPM, SPEED, TEMPERATURE, Display, quantity, quantity_between, whole_number
 
 HERTZ = Display("Hz")
 
@@ -86,12 +86,9 @@ class Options:
         display : Display
             How limits are shown.
         """
-        value, (low, high) = math.nan, limits
         with self._problems.after(f"{option}: "):
-            value = quantity(text, unit)
-            if not low <= value <= high:
-                raise InputError(f"got {short(text)}; allowed: {display.text(low)} to {display.text(high)}")
-        return value
+            return quantity_between(text, unit, *limits, display)
+        return math.nan
 
     def number(self, option: str, text: str, low: float, high: float) -> float:
         """A bare number within limits.
@@ -164,9 +161,8 @@ class Options:
         low, high = read(first), read(last)
         if low >= high:
             self._problems.append(f"{option}: got {first:.40} to {last:.40}; allowed: TO above FROM")
-        points = int(count) if count.isascii() and count.isdigit() and len(count) <= 9 else -1
-        if not 2 <= points <= most:
-            self._problems.append(f"{option}, POINTS: got {short(count)}; allowed: a whole number from 2 to {most}")
+        with self._problems.after(f"{option}, POINTS: "):
+            points = whole_number(count, 2, most)
         if len(self._problems) > before or not (math.isfinite(low) and math.isfinite(high)):
             return None
         return np.geomspace(low, high, points)

@@ -110,6 +110,11 @@ class LocatingElement(OnRings):
         return str(self.force.rolling_element)
 
     @property
+    def kind(self) -> type:
+        """Class by which `mbs.transient.kinds` has its functions in C: that of the force."""
+        return type(self.force)
+
+    @property
     def film_key(self) -> tuple[object, ...]:
         """Key that bearings with the same law at all speeds have in common."""
         law = id(self.force.dry_law) if self.films is None else self.films
@@ -160,14 +165,19 @@ class LocatingElement(OnRings):
         return (Port(self.inner, self.outer),)
 
     @property
+    def count(self) -> int:
+        """See `OnRings.count`."""
+        return int(self.force.angles.size)
+
+    @property
     def excitation(self) -> Excitation | None:
         """The passing of the rolling elements; None for a cage that stands."""
-        order = self.force.angles.size * abs(self.cage_turn)
+        order = self.count * abs(self.cage_turn)
         return Excitation(order, HARMONICS, rank=1) if order > 0.0 else None
 
     def passed(self, part: float) -> Self:
         """See `OnRings.passed`; with the films that are made already."""
-        turn = 2.0 * math.pi * part / self.force.angles.size
+        turn = 2.0 * math.pi * part / self.count
         other = dataclasses.replace(self, start_angle=self.start_angle + turn * float(np.sign(self.cage_turn)))
         other._made.update(self._made)
         return other

@@ -188,6 +188,21 @@ class LocatingPoint(RingPoint):
         return ratings
 
     @property
+    def cage_speed(self) -> float:
+        """Speed of the cage, in pure rolling [rad/s]."""
+        return float(self.geometry.cage_speed(self.inner_speed, self.outer_speed))
+
+    @property
+    def entrainment_speed(self) -> float:
+        """Speed of both surfaces against the cage, in pure rolling, in the middle of a roller [m/s]."""
+        return float(self.geometry.entrainment_speed(self.inner_speed, self.outer_speed))
+
+    @property
+    def centrifugal_load(self) -> float:
+        """Centrifugal load of a rolling element [N]."""
+        return float(self.force.speed_loads(self.inner_speed, self.outer_speed)[0])
+
+    @property
     def smallest_film(self) -> float:
         """Smallest of all minimum films [m]; NaN where none is known."""
         known = self.minimum_film[np.isfinite(self.minimum_film)]

@@ -37,7 +37,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.kernel.record import address
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.physics.solids import STEEL, Material
@@ -160,19 +160,18 @@ class TaperedForce(LocatingForce):
         slices: int = SLICES,
         material: Material = STEEL,
     ) -> None:
-        problems = [
+        problems = Problems(
             f"{geometry.kind}, {name}: got {value!r:.60} {unit}; allowed: finite and >= 0"
             for name, value, unit in (("damping", damping, "N s/m"), ("damping_time", damping_time, "s"))
             if not (isinstance(value, int | float) and math.isfinite(value) and value >= 0.0)
-        ]
+        )
         if profile not in ("iso", "straight") and not callable(profile):
             problems.append(f"{geometry.kind}, profile: got {profile!r:.60}; allowed: iso, straight")
         if not isinstance(slices, int) or isinstance(slices, bool) or not 2 <= slices <= MOST_SLICES:
             problems.append(
                 f"{geometry.kind}, slices: got {slices!r:.60}; allowed: a whole number from 2 to {MOST_SLICES}"
             )
-        if problems:
-            raise InputError(problems)
+        problems.check()
         self.geometry, self.same_films, self.material = geometry, cylinder_of(geometry), material
         self.damping, self.damping_time, self.profile = float(damping), float(damping_time), profile
         length, diameter, half = geometry.roller_length, geometry.roller_diameter, geometry.half_cone_angle

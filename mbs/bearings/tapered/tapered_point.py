@@ -90,21 +90,6 @@ class TaperedPoint(LocatingPoint):
             "rib_power": RIB_FRICTION * float(slides @ rollers.ribs.sum(axis=1)),
         }
 
-    @property
-    def cage_speed(self) -> float:
-        """Speed of the cage, in pure rolling [rad/s]."""
-        return float(self.geometry.cage_speed(self.inner_speed, self.outer_speed))
-
-    @property
-    def entrainment_speed(self) -> float:
-        """Speed of both surfaces against the cage in the middle of a roller [m/s]."""
-        return float(self.geometry.entrainment_speed(self.inner_speed, self.outer_speed))
-
-    @property
-    def centrifugal_load(self) -> float:
-        """Centrifugal load of a roller [N]."""
-        return self.force.speed_loads(self.inner_speed, self.outer_speed)[0]
-
 
 def _ribs(force: TaperedForce, rollers: TaperedLoads, course: Course) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Hertz pressures and central films of all ribs, (m, Z) each, and their sliding speeds, (m,)."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import Problems, problems_after
 from ehdmaps.outputs import Output, output_problems, write_text
 from mbs.commands.scenes.new import NEW
 from mbs.imports.ross_file import read_ross
@@ -18,18 +18,13 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Read the rotor, write the scene, and make sure that it stands."""
     source = Path(arguments.rotor)
     target = Path(arguments.output or f"{source.stem}_scene.toml")
-    problems, text, words = [], "", ""
-    try:
+    problems, text, words = Problems(), "", ""
+    with problems:
         rotor = read_ross(source)
-        try:
+        with problems_after(f"{source}: "):
             text, words = ross_scene(rotor, target.name, source.stem), summary(rotor)
             assemble(parse_scene(text, target.stem, "as a scene"))
-        except InputError as error:
-            problems += [f"{source}: {problem}" for problem in error.problems]
-    except InputError as error:
-        problems += error.problems
     problems += output_problems([Output("-o", target, NEW)], [source])
-    if problems:
-        raise InputError(problems)
+    problems.check()
     write_text(target, text, NEW)
     return f"{target}: written, of {words}; then: mbs check {target}", 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.outputs import Kind, Output, output_problems, write_text
 from mbs.scene.shafts.new import MACHINES, new_machine, new_shaft
 
@@ -17,21 +17,18 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Write the scene."""
     target = Path(arguments.output or f"{arguments.what}.toml")
     sections = None if arguments.csv is None else Path(arguments.csv)
-    problems, text = [], ""
-    try:
-        if arguments.what in MACHINES:
-            if sections is not None:
-                problems.append(
-                    f"--csv: got it beside {arguments.what}; allowed: `mbs new shaft --csv {sections}`, or, in a "
-                    f'[[shafts]] of the {arguments.what}, sections = "{sections}"'
-                )
+    problems, text = Problems(), ""
+    with problems.after("--csv: "):
+        if arguments.what not in MACHINES:
+            text = new_shaft(target, sections)
+        elif sections is None:
             text = new_machine(arguments.what, target)
         else:
-            text = new_shaft(target, sections)
-    except InputError as error:
-        problems += [f"--csv: {problem}" for problem in error.problems]
+            raise InputError(
+                f"got it beside {arguments.what}; allowed: `mbs new shaft --csv {sections}`, or, in a [[shafts]] of "
+                f'the {arguments.what}, sections = "{sections}"'
+            )
     problems += output_problems([Output("-o", target, NEW)], [] if sections is None else [sections])
-    if problems:
-        raise InputError(problems)
+    problems.check()
     write_text(target, text, NEW)
     return f"{target}: written; change its numbers, then: mbs check {target}", 0

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ehdmaps.choices import read_option
 from ehdmaps.errors import InputError, Problems, closest, short
 from ehdmaps.extras import lacking
 from ehdmaps.jobs.make.status import duration
@@ -18,7 +19,6 @@ from ehdmaps.physics.solids import MATERIALS, Material
 from ehdmaps.program import tell
 from ehdmaps.solids.calculix import program
 from ehdmaps.units import quantity
-from mbs.commands.common import read_option
 from mbs.flexible.carry_out import read_model, reduce_model
 from mbs.flexible.finite_elements import FiniteElementModel, extent
 from mbs.flexible.plan import (

@@ -44,7 +44,7 @@ def _asked(arguments: argparse.Namespace) -> tuple[Scene, list[LawChoice], float
     band = read_band(arguments, problems)
     scene, laws, clearance = read_compared(arguments, problems, TRADE)
     if scene is None:
-        raise InputError(tuple(dict.fromkeys(problems)))
+        raise InputError(problems)
     sensor = arguments.sensor or scene.campbell.sensor
     settings = dataclasses.replace(scene.campbell, sensor=sensor, **band)
     runs = not arguments.linear_only

@@ -6,7 +6,7 @@ import argparse
 import dataclasses
 from collections.abc import Sequence
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.units import RPM, closest
 from mbs.analyses.reach import axes_outside, outside_lines
 from mbs.commands.cases import read_compared
@@ -43,7 +43,7 @@ def _asked(
     arguments: argparse.Namespace,
 ) -> tuple[Scene, tuple[LawChoice, LawChoice], float | None, CampbellSettings, list[Variation]]:
     """Read what is compared, and what is varied; all problems at once."""
-    problems: list[str] = []
+    problems = Problems()
     band = read_band(arguments, problems)
     variations = _variations(arguments.vary, problems)
     scene, laws, clearance = read_compared(arguments, problems)
@@ -54,11 +54,11 @@ def _asked(
             "as --law hertz --map MAP.nc"
         )
     if problems or scene is None:
-        raise InputError(tuple(dict.fromkeys(problems)))
+        raise InputError(problems)
     return scene, (laws[0], laws[1]), clearance, dataclasses.replace(scene.campbell, **band), variations
 
 
-def _variations(given: Sequence[Sequence[str]], problems: list[str]) -> list[Variation]:
+def _variations(given: Sequence[Sequence[str]], problems: Problems) -> list[Variation]:
     """Read what was given for --vary."""
     found = []
     for name, *texts in given:
@@ -69,10 +69,8 @@ def _variations(given: Sequence[Sequence[str]], problems: list[str]) -> list[Var
         if not texts:
             problems.append(f"--vary {name}: got no value; allowed: one or more, such as {key.example!r}")
         for text in texts:
-            try:
+            with problems.after(f"--vary {name}: "):
                 found.append(Variation(name, key.read(text)))
-            except InputError as error:
-                problems.append(f"--vary {name}: {error.problems[0]}")
     return list(dict.fromkeys(found))
 
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehdmaps.ehl.solver import ReynoldsSolver
-from ehdmaps.errors import InputError
+from ehdmaps.errors import problems_after
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.sampling import SamplePoint, log_uniform
 from ehdmaps.jobs.problem import LOAD_AXIS, SPEED_AXIS
@@ -75,15 +75,13 @@ def wild_point(job: Job, seed: int, number: int) -> WildPoint:
     speed = 0.0 if rng.random() < 0.02 else log_uniform(rng, SLOWEST, SPEED_AXIS.high * DECADE)
     temperature = float(rng.uniform(OIL_TEMPERATURES[0] - BEYOND, OIL_TEMPERATURES[1] + BEYOND))
     words = f"seed {seed}, number {number}: w = {load:.6g} N/m, u = {speed:.6g} m/s, {temperature:.6g} K"
-    try:
+    with problems_after(f"{words}: "):
         if number % 2:
             contact, oil = own_contact(rng), own_oil(rng)
         else:
             contact = job.contacts[int(rng.integers(len(job.contacts)))]
             oils = (job.lubricant, *map(Lubricant.named, LUBRICANTS))
             oil = oils[int(rng.integers(len(oils)))]
-    except InputError as error:
-        raise InputError([f"{words}: {problem}" for problem in error.problems]) from error
     words += f", {contact.name} R = {contact.radius:.4g} m, E = {contact.material.youngs_modulus:.3g} Pa, {oil.name}"
     return WildPoint(SamplePoint(contact, load, speed, temperature), oil, words)
 

@@ -40,15 +40,13 @@ def films_of_balls(spec: BallSpec, surroundings: Surroundings) -> FilmsOfPoints:
     surroundings : Surroundings
         What it is built into.
     """
-    # films depend neither on the clearance nor on which way it stands
-    geometry = dataclasses.replace(spec.geometry, clearance=0.0, contact_angle=abs(spec.geometry.contact_angle))
     laws = surroundings.laws
-    return FilmsOfPoints(geometry, laws.lubricant, surroundings.temperature, laws.conditions)
+    return FilmsOfPoints(spec.geometry, laws.lubricant, surroundings.temperature, laws.conditions)
 
 
 @dataclass(frozen=True)
 class FilmsOfPoints:
-    """Laws of a geometry with the films of two speeds of the rings, read from the film table of points.
+    """Laws of a geometry with the films of two speeds of the rings, from the film table of points.
 
     Attributes
     ----------
@@ -60,16 +58,34 @@ class FilmsOfPoints:
         Temperature of the raceways [K].
     conditions : FilmConditions
         Heat in the inlet, oil supply and surfaces.
+    solves : bool
+        Whether films that the table has not are solved, at any speed; else they fade below its speeds.
     """
 
     geometry: BallGeometry
     oil: Lubricant
     temperature: float
     conditions: FilmConditions = PLAIN
+    solves: bool = False
+
+    def __post_init__(self) -> None:
+        # films depend neither on the clearance nor on which way it stands
+        same = dataclasses.replace(self.geometry, clearance=0.0, contact_angle=abs(self.geometry.contact_angle))
+        object.__setattr__(self, "geometry", same)
 
     def __call__(self, inner_speed: float, outer_speed: float) -> BallLaw:
         """Laws at speeds of the inner and the outer ring [rad/s]."""
         return _film_law(self, self.geometry.entrainment_speed(inner_speed, outer_speed))
+
+    def at(self, entrainment_speed: float) -> BallFilms:
+        """Films at an entrainment speed of the table, or at any where they are solved [m/s].
+
+        Raises
+        ------
+        SolverError
+            Where there are none.
+        """
+        return _films_at(self, entrainment_speed)
 
     def note(self, inner_speed: float, outer_speed: float) -> str:
         """Remark on the films at speeds of the rings [rad/s]; empty where there is nothing to say."""
@@ -90,7 +106,7 @@ class FilmsOfPoints:
         """Entrainment speed below which films fade to the dry contacts [m/s]."""
         from mbs.bearings.balls.films import slowest_films
 
-        return slowest_films(self.geometry, self.oil, self.temperature)
+        return 0.0 if self.solves else slowest_films(self.geometry, self.oil, self.temperature)
 
 
 @functools.lru_cache(maxsize=512)  # a run over a decade of speed has 120 laws, and comes back to them
@@ -114,7 +130,7 @@ def _films_at(films: FilmsOfPoints, u: float) -> BallFilms:
     from mbs.bearings.balls.films import ball_films
 
     at = films.geometry, films.oil, u, films.temperature
-    return ball_films(*at, solves=False, conditions=films.conditions)
+    return ball_films(*at, solves=films.solves, conditions=films.conditions)
 
 
 @functools.lru_cache(maxsize=32)

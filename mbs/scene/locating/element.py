@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.units import TEMPERATURE
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.laws import dry_law
@@ -127,7 +127,7 @@ def located_problems(spec: LocatingSpec, surroundings: Surroundings) -> list[str
     surroundings : Surroundings
         What it is built into.
     """
-    problems, kind, where = [], _KINDS[type(spec)], f"bearing {spec.name!r}"
+    problems, kind, where = Problems(), _KINDS[type(spec)], f"bearing {spec.name!r}"
     if spec.inner.partition(":")[0] == spec.outer.partition(":")[0]:
         problems.append(f"{where}: got {spec.inner} and {spec.outer}; allowed: rings on two bodies")
     laws = surroundings.laws
@@ -135,10 +135,8 @@ def located_problems(spec: LocatingSpec, surroundings: Surroundings) -> list[str
         oil, kelvin = laws.scene.lubricant, surroundings.temperature
         if oil is None:
             return [*problems, f"{where}: films need the oil of the scene; add [lubricant]"]
-        try:
+        with problems.after(f"{where}, {TEMPERATURE.text(kelvin)}: "):
             oil.at(kelvin)
-        except InputError as error:
-            problems += [f"{where}, {TEMPERATURE.text(kelvin)}: {problem}" for problem in error.problems]
         return problems
     try:
         if hertz_damper(laws.chosen) is not None:

@@ -7,7 +7,6 @@ from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.units import LENGTH, PRESSURE, TEMPERATURE, Display
 from mbs.bearings.thermal import EXPANSIONS, STEEL_EXPANSION, GivenTemperatures, HeatPaths, Mounting, Seat
-from mbs.scene import fields
 from mbs.scene.fields import MICROMETRE
 
 CONDUCTANCE = Display("W/K")
@@ -62,7 +61,7 @@ def read_thermal(section: Table) -> GivenTemperatures | HeatPaths | None:
         return GivenTemperatures(inner, outer)
     values = {**paths, **around, **friction, "constant_power": power}
     given = {key: value for key, value in values.items() if value is not None}
-    return fields.built(table, lambda: HeatPaths(**given))
+    return table.made(lambda: HeatPaths(**given))
 
 
 def read_mounting(section: Table) -> Mounting | None:

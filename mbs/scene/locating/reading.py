@@ -51,14 +51,11 @@ def _ball(section: Table, name: str) -> BallSpec | None:
         if turned and (geometry.contact_angle == 0.0 or geometry.axial_play or geometry.spherical):
             section.note("mirrored", f"got true for {geometry.name}, which is alike both ways; delete it")
         way = -1.0 if turned else 1.0
-        try:
-            geometry = dataclasses.replace(geometry, contact_angle=way * geometry.contact_angle)
-            geometry = geometry if clearance is None else geometry.with_clearance(clearance)
-            geometry = _mounted(section, geometry)
-        except InputError as error:
-            geometry = None
-            for problem in error.problems:
-                section.note("diametral_clearance", problem)
+        placed = dataclasses.replace(geometry, contact_angle=way * geometry.contact_angle)
+        geometry = section.made(
+            lambda: _mounted(section, placed if clearance is None else placed.with_clearance(clearance)),
+            "diametral_clearance",
+        )
     if inner is None or outer is None or geometry is None:
         return None
     return BallSpec(name, inner, outer, geometry, angle, offset)
@@ -78,12 +75,8 @@ def _mounted(section: Table, geometry: BallGeometry) -> BallGeometry:
         rings = (thermal.inner or rings[0], thermal.outer or rings[1])
     elif thermal is not None:
         section.note("thermal", "got paths of heat; allowed for balls: inner_ring and outer_ring")
-    try:
-        return mounted(geometry, mounting or Mounting(), *rings)[0]
-    except InputError as error:
-        for problem in error.problems:
-            section.note("fit", problem.removeprefix("fit of the "))
-        return geometry
+    made = section.made(lambda: mounted(geometry, mounting or Mounting(), *rings)[0], "fit", "fit of the ")
+    return geometry if made is None else made
 
 
 def _known(geometry: BallGeometry | None) -> Callable[[str], BallGeometry]:

@@ -74,7 +74,7 @@ def read_sections(section: Table, folder: Path | None) -> tuple[list[Section], t
         path = fields.file_path(section, "sections", folder)
         if path is None:
             return [], ()
-        rows = fields.built(section, lambda: csv_rows(path))
+        rows = section.made(lambda: csv_rows(path))
         return _chained(rows or [], section.problems), (path,)
     if not isinstance(given, list):
         if "sections" in section:
@@ -246,8 +246,7 @@ def _section(table: Table, reached: float) -> tuple[Section | None, float | None
     if begin is None or end is None or diameter is None:
         return None, onward
     ends = (begin, end)
-    made = fields.built(
-        table,
+    made = table.made(
         lambda: Section(
             *ends,
             diameter,

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
 
-from ehdmaps.errors import InputError
 from ehdmaps.units import LENGTH, short
 from mbs.model.elements import GROUND
 from mbs.scene import fields
@@ -126,12 +125,7 @@ def read_located(section: Table, name: str, estimate: Callable[[str], Geometry])
         Designation to geometry, as a catalogue has it; raises an InputError.
     """
     inner, outer = read_rings(section, name)
-    geometry = None
-    try:
-        geometry = estimate(str(section.get("bearing")))
-    except InputError as error:
-        for problem in error.problems:
-            section.note("bearing", problem.partition("bearing designation: ")[2] or problem)
+    geometry = section.made(lambda: estimate(str(section.get("bearing"))), "bearing", "bearing designation: ")
     mirrored = section.flag("mirrored")
     angle = section.quantity("start_angle", "rad", -7.0, 7.0, fields.DEGREE) or 0.0
     offset = section.quantity("axial_offset", "m", -FARTHEST, FARTHEST, fields.MICROMETRE) or 0.0

@@ -89,7 +89,7 @@ def read_shaft(
         except InputError:
             return made(None)
 
-    return fields.built(section, unstated if cutoff is None else lambda: made(cutoff))
+    return section.made(unstated if cutoff is None else lambda: made(cutoff))
 
 
 def build_shaft(spec: ShaftSpec) -> Body:
@@ -181,7 +181,7 @@ def _inertia(table: Table) -> Inertia | None:
     if mass is None:
         return None
     if not given:
-        return fields.built(table, lambda: Inertia(mass, 0.0, 0.0))
+        return table.made(lambda: Inertia(mass, 0.0, 0.0))
     if polar is None or transverse is None:
         return None
-    return fields.built(table, lambda: Inertia(mass, polar, transverse))
+    return table.made(lambda: Inertia(mass, polar, transverse))

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from ehdmaps.errors import AnalysisError, InputError, SolverError
+from ehdmaps.errors import AnalysisError, InputError, Problems, SolverError
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.physics.heat import beyond_rule
 from ehdmaps.physics.lubricant import DEFAULT_OIL
@@ -18,11 +18,12 @@ from ehdmaps.physics.surface import SMOOTH
 from ehdmaps.units import TEMPERATURE, Tolerance
 from mbs.analyses.bearing_point import points_over, without_holes
 from mbs.bearings.laws import FORMULAS
-from mbs.commands.one_bearing.bands import NAME, point_bands, scene_of, turned
-from mbs.commands.one_bearing.family import Asked, AtSpeed, Family, Request
-from mbs.commands.one_bearing.files import SOURCE, UNIT, Export, bearing_outputs, is_export, write_export
-from mbs.commands.one_bearing.linear_files import count_problems, ending_of
-from mbs.commands.one_bearing.shared import (
+from mbs.model.findings import Cause, Finding
+from mbs.one_bearing.bands import NAME, point_bands, scene_of, turned
+from mbs.one_bearing.family import Asked, AtSpeed, Family, Request
+from mbs.one_bearing.files import SOURCE, UNIT, Export, bearing_outputs, is_export, write_export
+from mbs.one_bearing.linear_files import count_problems, ending_of
+from mbs.one_bearing.shared import (
     CELSIUS_40,
     read_choices,
     read_dielectric,
@@ -33,7 +34,6 @@ from mbs.commands.one_bearing.shared import (
     read_rings,
     refuse_others,
 )
-from mbs.model.findings import Cause, Finding
 from mbs.output.one_bearing.kind import Description, Number, Points
 from mbs.output.one_bearing.table import ROUGHNESS
 from mbs.scene.contact_laws import table_path
@@ -64,7 +64,7 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
     InputError
         With every problem.
     """
-    problems: list[str] = []
+    problems = Problems()
     chosen = read_choices(arguments, problems)
     asked = family.read(arguments, chosen, problems)
     refuse_others(arguments, chosen, family, problems)
@@ -97,7 +97,7 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
         of_one_load=is_export(arguments.output),
     )
     if problems or asked is None or damper is None or oil is None:
-        raise InputError(tuple(dict.fromkeys(problems)))
+        raise InputError(problems)
     surface = asked.surface or SMOOTH
     if "roughness" in chosen:
         surface = dataclasses.replace(surface, roughness=chosen["roughness"].roughness)

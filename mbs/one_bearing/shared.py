@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ehdmaps.choices import texts_of
-from ehdmaps.errors import InputError
+from ehdmaps.choices import read_option, texts_of
+from ehdmaps.errors import InputError, Problems, problems_after
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.physics.designations.clearance import clearance_range
@@ -18,8 +18,8 @@ from ehdmaps.physics.heat import ISOTHERMAL, heat_data, heat_in_force
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.surface import CrownedProfile, TabulatedProfile
-from ehdmaps.units import RPM, TEMPERATURE, Display, closest, quantity, short
-from mbs.commands.one_bearing.family import Family, Operating
+from ehdmaps.units import RPM, TEMPERATURE, Display, closest, quantity, short, whole_number
+from mbs.one_bearing.family import Family, Operating
 from mbs.output.one_bearing.table import WIDE_RANGE
 from mbs.scene.choices import OPTIONS
 from mbs.scene.contact_laws import HERTZ_FORMS, Damper, hertz_damper
@@ -37,9 +37,6 @@ CELSIUS_40 = 313.15
 
 MOST_POINTS = 500
 
-_ROUND_OFF = 1e-12
-"""Part of a limit by which a value of just its size may miss it, as 1e5 rpm do in rad/s."""
-
 LOADS, SPEEDS = (1e-3, 1e7), (0.0, 1e5 * math.pi / 30.0)
 """Smallest and largest load [N] and speed [rad/s]."""
 
@@ -47,7 +44,7 @@ SLOWEST = 1e-6
 """Smallest speed that is not zero [rad/s]: a turn in two months. Groups of films are no numbers below."""
 
 
-def read_choices(arguments: argparse.Namespace, problems: list[str]) -> dict[str, Any]:
+def read_choices(arguments: argparse.Namespace, problems: Problems) -> dict[str, Any]:
     """Values that were chosen, once each, by the names of the choices."""
     chosen: dict[str, Any] = {}
     for choice in OPTIONS:
@@ -66,7 +63,7 @@ def read_choices(arguments: argparse.Namespace, problems: list[str]) -> dict[str
     return chosen
 
 
-def read_direction(given: Sequence[str] | None, problems: list[str]) -> tuple[float, float]:
+def read_direction(given: Sequence[str] | None, problems: Problems) -> tuple[float, float]:
     """Unit vector of the load: an angle from y towards z, or two components."""
     allowed = 'an angle from y towards z, such as "30 deg", or two numbers, the parts along y and z, not both zero'
     texts = list(given or ["0 deg"])
@@ -103,7 +100,7 @@ def read_values(
     unit: str,
     limits: tuple[float, float],
     display: Display,
-    problems: list[str],
+    problems: Problems,
 ) -> tuple[float, ...]:
     """Rising values of an option: single ones, and ranges FROM TO POINTS, evenly spaced, wide ones in the logarithm.
 
@@ -119,7 +116,7 @@ def read_values(
         Smallest and largest allowed value [unit].
     display : Display
         How messages show values.
-    problems : list of str
+    problems : Problems
         Takes what is wrong.
     """
     found: list[float] = []
@@ -131,18 +128,21 @@ def read_values(
             )
             continue
         before = len(problems)
-        ends = [_quantity(option, text, unit, limits, display, problems) for text in texts[:2]]
+        read = [_quantity(option, text, unit, limits, display, problems) for text in texts[:2]]
+        ends = [value for value in read if value is not None]
         if len(texts) == 1:
             found += ends
             continue
         points = read_whole(f"{option}, POINTS", texts[2], 2, MOST_POINTS, problems)
-        if len(problems) == before and not ends[0] < ends[1]:
+        if len(problems) > before:
+            continue
+        low, high = ends
+        if not low < high:
             problems.append(f"{option}: got {texts[0]!r} to {texts[1]!r}; allowed: rising")
-        elif len(problems) == before:
-            wide = 0.0 < WIDE_RANGE * ends[0] < ends[1]
-            space = np.geomspace if wide else np.linspace
-            # Numbers as they were typed, and not one bit beside.
-            found += [float(f"{value:.12g}") for value in space(ends[0], ends[1], points)]
+            continue
+        space = np.geomspace if 0.0 < WIDE_RANGE * low < high else np.linspace
+        # Numbers as they were typed, and not one bit beside.
+        found += [float(f"{value:.12g}") for value in space(low, high, points)]
     return tuple(sorted(set(found)))
 
 
@@ -153,7 +153,7 @@ def read_one(
     limits: tuple[float, float],
     display: Display,
     default: float,
-    problems: list[str],
+    problems: Problems,
 ) -> float:
     """One value, or its default where none was given, or where a problem was noted.
 
@@ -171,38 +171,25 @@ def read_one(
         Form in which messages show values.
     default : float
         Value where none was given [unit].
-    problems : list of str
+    problems : Problems
         List that takes what is wrong.
     """
-    if text is None:
-        return default
-    value = _quantity(option, text, unit, limits, display, problems)
-    return default if math.isnan(value) else value
+    value = None if text is None else _quantity(option, text, unit, limits, display, problems)
+    return default if value is None else value
 
 
 def _quantity(
-    option: str, text: str, unit: str, limits: tuple[float, float], display: Display, problems: list[str]
-) -> float:
-    """One quantity within its limits; NaN where a problem was noted."""
-    try:
-        value = quantity(text, unit)
-    except InputError as error:
-        problems.append(f"{option}: {error.problems[0]}")
-        return math.nan
-    reach = _ROUND_OFF * max(abs(limits[0]), abs(limits[1]))
-    if not limits[0] - reach <= value <= limits[1] + reach:
-        problems.append(
-            f"{option}: got {short(text)}; allowed: {display.text(limits[0])} to {display.text(limits[1])}; check its "
-            "unit"
-        )
-        return math.nan
-    if unit == "rad/s" and 0.0 < abs(value) < SLOWEST:
+    option: str, text: str, unit: str, limits: tuple[float, float], display: Display, problems: Problems
+) -> float | None:
+    """One quantity within its limits, of which speeds are zero or no longer next to it; None with the problem noted."""
+    value = read_option(option, text, unit, limits, display, problems)
+    if value is not None and unit == "rad/s" and 0.0 < abs(value) < SLOWEST:
         problems.append(f"{option}: got {short(text)}; allowed: zero, or from {display.text(SLOWEST)} up")
-        return math.nan
-    return min(max(value, limits[0]), limits[1])
+        return None
+    return value
 
 
-def read_whole(option: str, text: str, low: int, high: int, problems: list[str]) -> int:
+def read_whole(option: str, text: str, low: int, high: int, problems: Problems) -> int:
     """A whole number; the lowest one where a problem was noted.
 
     Parameters
@@ -211,23 +198,22 @@ def read_whole(option: str, text: str, low: int, high: int, problems: list[str])
         Name of the option, and what was given.
     low, high : int
         Smallest and largest allowed number.
-    problems : list of str
+    problems : Problems
         List that takes what is wrong.
     """
-    if text.isascii() and text.isdigit() and len(text) < 10 and low <= int(text) <= high:
-        return int(text)
-    problems.append(f"{option}: got {short(text)}; allowed: a whole number from {low} to {high}")
+    with problems.after(f"{option}: "):
+        return whole_number(text, low, high)
     return low
 
 
-def read_operating(arguments: argparse.Namespace, problems: list[str], *, axial: bool = True) -> Operating:
+def read_operating(arguments: argparse.Namespace, problems: Problems, *, axial: bool = True) -> Operating:
     """Loads and speeds, of which there may not be too many.
 
     Parameters
     ----------
     arguments : Namespace
         Options as they were parsed.
-    problems : list of str
+    problems : Problems
         What is wrong; added to.
     axial : bool
         Whether the bearing takes an axial load and a speed of its outer ring.
@@ -242,9 +228,7 @@ def read_operating(arguments: argparse.Namespace, problems: list[str], *, axial:
     return Operating(loads, along, read_direction(arguments.direction, problems), speeds, turning)
 
 
-def refuse_others(
-    arguments: argparse.Namespace, chosen: Mapping[str, Any], family: Family, problems: list[str]
-) -> None:
+def refuse_others(arguments: argparse.Namespace, chosen: Mapping[str, Any], family: Family, problems: Problems) -> None:
     """Note options that are for bearings of other families.
 
     Parameters
@@ -255,7 +239,7 @@ def refuse_others(
         Choices that were given, by their names.
     family : Family
         Family of the bearing.
-    problems : list of str
+    problems : Problems
         What is wrong; added to.
     """
     given = [f"--{name}" for name in chosen if name not in (*family.taken, "know")]
@@ -279,7 +263,7 @@ _OWN = {
 """Options that some families take, as they are where nothing is given."""
 
 
-def read_law(chosen: Mapping[str, Any], family: Family, problems: list[str]) -> tuple[str, Damper | None]:
+def read_law(chosen: Mapping[str, Any], family: Family, problems: Problems) -> tuple[str, Damper | None]:
     """The law, that of the map or the film table if none is chosen, and its damper; None where a problem was noted.
 
     Parameters
@@ -288,7 +272,7 @@ def read_law(chosen: Mapping[str, Any], family: Family, problems: list[str]) -> 
         Choices by their names.
     family : Family
         Family of the bearing.
-    problems : list of str
+    problems : Problems
         What is wrong; added to.
     """
     law: str = chosen.get("law", "map" if "map" in family.film_laws and "map" in chosen else TABLE_LAW)
@@ -297,19 +281,17 @@ def read_law(chosen: Mapping[str, Any], family: Family, problems: list[str]) -> 
     if (own := family.own_law(law)) is not None:
         problems += own
         return law, Damper()
-    try:
+    damper: Damper | None = None
+    with problems:
         damper = hertz_damper(law)
-    except InputError as error:
-        problems += error.problems
-        return law, None
-    if damper is None:
-        near = closest(law, ("hertz", *family.film_laws))
-        more = "".join(f", {name}" for name in family.film_laws) + family.beside_laws
-        problems.append(f"--law: got {short(law)}{near} for a {family.words}; allowed: hertz, {HERTZ_FORMS}{more}")
+        if damper is None:
+            near = closest(law, ("hertz", *family.film_laws))
+            more = "".join(f", {name}" for name in family.film_laws) + family.beside_laws
+            raise InputError(f"--law: got {short(law)}{near} for a {family.words}; allowed: hertz, {HERTZ_FORMS}{more}")
     return law, damper
 
 
-def read_rings(arguments: argparse.Namespace, chosen: Mapping[str, Any], problems: list[str]) -> tuple[float, float]:
+def read_rings(arguments: argparse.Namespace, chosen: Mapping[str, Any], problems: Problems) -> tuple[float, float]:
     """Temperatures of the inner and the outer raceway [K], that of --temperature where they have none of their own.
 
     Parameters
@@ -318,7 +300,7 @@ def read_rings(arguments: argparse.Namespace, chosen: Mapping[str, Any], problem
         Options as they were parsed.
     chosen : mapping of str to object
         Choices by their names.
-    problems : list of str
+    problems : Problems
         What is wrong; added to.
     """
     around, given = float(chosen.get("temperature", CELSIUS_40)), arguments.ring_temperatures
@@ -334,7 +316,7 @@ def read_rings(arguments: argparse.Namespace, chosen: Mapping[str, Any], problem
 
 
 def read_profile_text(
-    text: str, geometry: BearingGeometry | None, problems: list[str]
+    text: str, geometry: BearingGeometry | None, problems: Problems
 ) -> str | CrownedProfile | TabulatedProfile:
     """The profile of cylindrical rollers; "iso" where a problem was noted.
 
@@ -344,7 +326,7 @@ def read_profile_text(
         Value as a scene writes it.
     geometry : BearingGeometry or None
         Geometry of the bearing; None where a problem of it was noted.
-    problems : list of str
+    problems : Problems
         What is wrong; added to.
     """
     if text in ("iso", "straight"):
@@ -371,7 +353,7 @@ def assumed_clearance(geometry: BearingGeometry | BallGeometry | TaperedGeometry
 
 
 def read_oil(
-    name: str | None, temperature: float, problems: list[str], usual: Lubricant | None = None
+    name: str | None, temperature: float, problems: Problems, usual: Lubricant | None = None
 ) -> Lubricant | None:
     """The oil, which must suit the temperature; None where a problem was noted.
 
@@ -381,30 +363,28 @@ def read_oil(
         Name as it was typed; None for the usual oil.
     temperature : float
         Temperature of the raceways [K].
-    problems : list of str
+    problems : Problems
         What is wrong; added to.
     usual : Lubricant, optional
         The usual oil; FVA 3 if left out.
     """
-    option = "--oil"
-    try:
-        oil = usual if name is None and usual is not None else Lubricant.named(DEFAULT_OIL if name is None else name)
-        option = "--temperature"
-        oil.at(temperature)
-    except InputError as error:
-        problems += [f"{option}: {problem}" for problem in error.problems]
-        return None
-    return oil
+    with problems:
+        with problems_after("--oil: "):
+            oil = usual if name is None and usual is not None else Lubricant.named(name or DEFAULT_OIL)
+        with problems_after("--temperature: "):
+            oil.at(temperature)
+        return oil
+    return None
 
 
-def read_dielectric(text: str | None, problems: list[str]) -> Dielectric | None:
+def read_dielectric(text: str | None, problems: Problems) -> Dielectric | None:
     """The oil as a dielectric; None where none was given, or a problem was noted.
 
     Parameters
     ----------
     text : str or None
         A permittivity, or a table in braces.
-    problems : list of str
+    problems : Problems
         List that takes what is wrong.
 
     Examples
@@ -432,12 +412,10 @@ def read_dielectric(text: str | None, problems: list[str]) -> Dielectric | None:
     problems += noted
     if noted or permittivity is None:
         return None
-    try:
+    with problems.after(f"{option}: "):
         outlet = next((one for one in OUTLETS if one == chosen), OUTLETS[0])
         return Dielectric(permittivity, known_at, conductivity, outlet, gap)
-    except InputError as error:
-        problems += [f"{option}: {problem}" for problem in error.problems]
-        return None
+    return None
 
 
 def _number_or_text(text: str) -> float | str:
@@ -445,7 +423,7 @@ def _number_or_text(text: str) -> float | str:
     return float(text) if _is_number(text) else text
 
 
-def read_heat(chosen: Mapping[str, Any], oil: Lubricant | None, lack: str, problems: list[str]) -> bool:
+def read_heat(chosen: Mapping[str, Any], oil: Lubricant | None, lack: str, problems: Problems) -> bool:
     """Tell whether heat in the inlet thins the films, as --physics says it.
 
     Parameters
@@ -456,7 +434,7 @@ def read_heat(chosen: Mapping[str, Any], oil: Lubricant | None, lack: str, probl
         Oil of the films, whose conductivity has to be known.
     lack : str
         Why films have none of it, and what is allowed; empty where they may.
-    problems : list of str
+    problems : Problems
         List that takes what is wrong.
     """
     physics = chosen.get("physics")
@@ -464,8 +442,6 @@ def read_heat(chosen: Mapping[str, Any], oil: Lubricant | None, lack: str, probl
         problems.append(f"--physics: got {physics} {lack}")
     heat = not lack and heat_in_force(None if physics is None else physics != ISOTHERMAL, oil)
     if heat and oil is not None:
-        try:
+        with problems.after("--physics: "):
             heat_data(oil, STEEL)
-        except InputError as error:
-            problems += [f"--physics: {problem}" for problem in error.problems]
     return heat

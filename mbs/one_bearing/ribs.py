@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.physics.catalogue import designated
 from ehdmaps.physics.rollers.ribbed_geometry import ribbed_estimate
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
@@ -18,8 +18,8 @@ from mbs.bearings.laws import FORMULAS
 from mbs.bearings.tapered.line_film import LineFilms
 from mbs.bearings.tapered.tapered_bearing import MOST_SLICES, SLICES, TaperedForce
 from mbs.bearings.tapered.tapered_point import TaperedPoint
-from mbs.commands.one_bearing.family import Asked, AtSpeed, Family, Operating, Request
-from mbs.commands.one_bearing.shared import assumed_clearance, read_profile_text, read_whole
+from mbs.one_bearing.family import Asked, AtSpeed, Family, Operating, Request
+from mbs.one_bearing.shared import assumed_clearance, read_profile_text, read_whole
 from mbs.output.one_bearing.ribs import RIBBED
 from mbs.scene.fields import FORCE
 from mbs.scene.map_set import TABLE_LAW
@@ -33,9 +33,11 @@ _TAKEN = ("law", "physics", "temperature", "supply", "roughness", "films")
 """Choices that all of them take; those without a contact angle have a clearance too."""
 
 
-def _read_tapered(arguments: argparse.Namespace, _: Mapping[str, Any], problems: list[str]) -> Asked | None:
+def _read_tapered(arguments: argparse.Namespace, _: Mapping[str, Any], problems: Problems) -> Asked | None:
     """The tapered roller bearing of a designation, with profile and slices."""
-    geometry = _geometry(lambda: tapered_estimate(arguments.bearing), problems)
+    geometry: TaperedGeometry | None = None
+    with problems.after("BEARING: "):
+        geometry = tapered_estimate(arguments.bearing)
     if arguments.profile not in ("iso", "straight"):
         problems.append(
             f"--profile: got {arguments.profile!r:.60} for a tapered roller bearing; allowed: iso, straight"
@@ -44,9 +46,11 @@ def _read_tapered(arguments: argparse.Namespace, _: Mapping[str, Any], problems:
     return None if geometry is None else Asked(geometry, {"profile": arguments.profile, "slices": slices})
 
 
-def _read_ribbed(arguments: argparse.Namespace, chosen: Mapping[str, Any], problems: list[str]) -> Asked | None:
+def _read_ribbed(arguments: argparse.Namespace, chosen: Mapping[str, Any], problems: Problems) -> Asked | None:
     """The bearing NJ or NUP of a designation, with its clearance, profile and slices."""
-    geometry = _geometry(lambda: ribbed_estimate(arguments.bearing, chosen.get("clearance")), problems)
+    geometry: TaperedGeometry | None = None
+    with problems.after("BEARING: "):
+        geometry = ribbed_estimate(arguments.bearing, chosen.get("clearance"))
     slices = _slices(arguments, problems)
     if geometry is None:
         return None
@@ -55,16 +59,7 @@ def _read_ribbed(arguments: argparse.Namespace, chosen: Mapping[str, Any], probl
     return Asked(geometry, {"profile": profile, "slices": slices}, assumed)
 
 
-def _geometry(read: Callable[[], TaperedGeometry], problems: list[str]) -> TaperedGeometry | None:
-    """The bearing; None where a problem was noted."""
-    try:
-        return read()
-    except InputError as error:
-        problems += [f"BEARING: {problem}" for problem in error.problems]
-        return None
-
-
-def _slices(arguments: argparse.Namespace, problems: list[str]) -> int:
+def _slices(arguments: argparse.Namespace, problems: Problems) -> int:
     """Slices of a roller: fewer than those of cylindrical ones where nothing is asked for."""
     return SLICES if arguments.slices == "41" else read_whole("--slices", arguments.slices, 2, MOST_SLICES, problems)
 

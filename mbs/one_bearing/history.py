@@ -11,12 +11,12 @@ import math
 from functools import cache
 from typing import Any, NamedTuple
 
-from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.errors import AnalysisError, InputError, Problems
 from ehdmaps.outputs import TABLE, Output, output_problems
 from ehdmaps.units import RPM
-from mbs.commands.one_bearing.family import Family, Request
-from mbs.commands.one_bearing.request import point_at, read_request
-from mbs.commands.one_bearing.shared import LOADS, SPEEDS
+from mbs.one_bearing.family import Family, Request
+from mbs.one_bearing.request import point_at, read_request
+from mbs.one_bearing.shared import LOADS, SPEEDS
 from mbs.output.one_bearing.history import history_lines, write_history
 from mbs.scene.fields import FORCE, read_columns
 
@@ -74,7 +74,7 @@ def read_history(path: str) -> History:
     axial = found.get("axial", [0.0] * len(loads))
     if not loads:
         raise InputError(f"{path}: got no points; allowed: 1 to {_MOST}")
-    problems = []
+    problems = Problems()
     for line, (load, along, speed, weight) in enumerate(zip(loads, axial, speeds, weights, strict=True), 1):
         where = f"{path}, point {line}"
         if not (0.0 <= load <= LOADS[1] and abs(along) <= LOADS[1] and max(load, abs(along)) >= LOADS[0]):
@@ -91,8 +91,7 @@ def read_history(path: str) -> History:
         problems.append(f"{path}: got shares with a sum of {100.0 * total:.6g} %; allowed: 100 %, of the revolutions")
     if not problems and not 0.0 < total < math.inf:
         problems.append(f"{path}: got no revolution; allowed: a point that turns for some time")
-    if problems:
-        raise InputError(problems)
+    problems.check()
     return History(
         tuple(loads), tuple(axial) if "axial" in found else None, tuple(speeds), tuple(turn / total for turn in turns)
     )
@@ -117,7 +116,7 @@ def run_history(arguments: argparse.Namespace, path: str, family_of: Any) -> tup
     AnalysisError
         Where a point has no equilibrium.
     """
-    wrong = output_problems([Output("-o", arguments.output, TABLE)], [path])
+    wrong = Problems(output_problems([Output("-o", arguments.output, TABLE)], [path]))
     for option, given in (("--speed", arguments.speed), ("--plot", arguments.plot)):
         wrong += [f"{option}: got {given!r:.60} with a history; leave it out"] if given else []
     if len(arguments.load) + len(arguments.load[0]) > 2:
@@ -125,8 +124,7 @@ def run_history(arguments: argparse.Namespace, path: str, family_of: Any) -> tup
     history = read_history(path)
     if history.axial is not None and arguments.axial is not None:
         wrong.append(f"--axial: got {arguments.axial!r:.60}, and {path} has axial loads; leave one of the two out")
-    if wrong:
-        raise InputError(wrong)
+    wrong.check()
     axial = arguments.axial if history.axial is None else _newtons(max(history.axial, key=abs))
     family: Family = family_of(arguments.bearing, axial)
     given = {

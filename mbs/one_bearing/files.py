@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ehdmaps.errors import InputError
 from ehdmaps.outputs import Output
 from ehdmaps.units import TEMPERATURE
-from mbs.commands.one_bearing.linear_files import around, ending_of, header_of, is_linear, linear_outputs, write_linear
+from mbs.one_bearing.linear_files import around, ending_of, header_of, is_linear, linear_outputs, write_linear
 from mbs.output.one_bearing.kind import Description
 from mbs.output.one_bearing.table import heading
 from mbs.scene.map_set import TABLE_LAW
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
     from mbs.bearings.deviating.tables import Deviations
     from mbs.bearings.locating.normal_law import PairLaw
-    from mbs.commands.one_bearing.family import Family
     from mbs.exports.one_bearing.speed_laws import SpeedLaws
+    from mbs.one_bearing.family import Family
 
 SOURCE, UNIT = ".c", ".fmu"
 """Endings of files that hold the bearing itself."""

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ehdmaps.choices import STRUCTURE
-from ehdmaps.errors import EhdmapsError, InputError
+from ehdmaps.errors import InputError, Problems
 from ehdmaps.inputs import first_bytes, read_text
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.catalogue import designated, designations
@@ -30,8 +30,8 @@ from mbs.bearings.contact_report import BearingPoint
 from mbs.bearings.films import FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.laws import Law
 from mbs.bearings.thermal import BearingState, Mounting, operating_clearance
-from mbs.commands.one_bearing.family import Asked, AtSpeed, Family, Operating, Request
-from mbs.commands.one_bearing.shared import (
+from mbs.one_bearing.family import Asked, AtSpeed, Family, Operating, Request
+from mbs.one_bearing.shared import (
     assumed_clearance,
     read_profile_text,
     read_rings,
@@ -43,6 +43,7 @@ from mbs.scene.choices import LACKS
 from mbs.scene.contact_laws import TABLE_FORM, dry_words, read_law, table_path, table_problems
 from mbs.scene.map_set import OTHER_OIL, TABLE_LAW, geometry_problems, structure_words
 from mbs.scene.specs import BearingSpec
+from mbs.scene.subject import opened_map
 
 if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
@@ -56,12 +57,16 @@ FORMULA_LOADS = (100.0, 1e8)
 """Loads for which the law of the formula is made [N/m]; far beyond 4 GPa in any bearing of steel."""
 
 
-def _read(arguments: argparse.Namespace, chosen: Mapping[str, Any], problems: list[str]) -> Asked | None:
+def _read(arguments: argparse.Namespace, chosen: Mapping[str, Any], problems: Problems) -> Asked | None:
     """The bearing with its map, clearance, profile, slices and the temperatures of its rings."""
-    given, emap = read_given(arguments.bearing, problems), _map(chosen.get("map"), problems)
+    given: Asked | None = None
+    with problems:
+        given = read_given(arguments.bearing)
+    emap = opened_map(chosen["map"], problems) if "map" in chosen else None
     law = chosen.get("law", TABLE_LAW)
     structure, of_table = chosen.get(STRUCTURE.name), law == TABLE_LAW and "map" not in chosen
-    emap = _structured(emap, structure, problems)
+    with problems:
+        emap = _structured(emap, structure)
     if structure is not None and emap is None and not of_table and "map" not in chosen:
         problems.append(f"--{STRUCTURE.name}: got {structure} {LACKS['maps']}")
     if law == "map" and "map" not in chosen:
@@ -82,10 +87,8 @@ def _read(arguments: argparse.Namespace, chosen: Mapping[str, Any], problems: li
     open_to_all = geometry.clearance_range is not None or geometry.diametral_clearance == 0.0
     assumed = tuple(assumed_clearance(geometry, "clearance" in chosen)) if open_to_all else ()
     if "clearance" in chosen:
-        try:
+        with problems.after("--clearance: "):
             geometry = geometry.with_clearance(chosen["clearance"])
-        except InputError as error:
-            problems += [f"--clearance: {problem}" for problem in error.problems]
     if len(problems) == before and arguments.ring_temperatures is not None:
         warm = operating_clearance(geometry, Mounting(), *rings, given.material)
         state = BearingState("bearing", *rings, warm)
@@ -101,48 +104,42 @@ def _read(arguments: argparse.Namespace, chosen: Mapping[str, Any], problems: li
     )
 
 
-def read_given(source: str, problems: list[str]) -> Asked | None:
-    """The bearing of a name, a shipped job or a file; None where a problem was noted.
+def read_given(source: str) -> Asked:
+    """The bearing of a name, a shipped job or a file.
 
     Parameters
     ----------
     source : str
         The argument.
-    problems : list of str
-        List that takes what is wrong.
+
+    Raises
+    ------
+    InputError
+        With what is wrong.
     """
     if source in BEARINGS:
         return Asked(BEARINGS[source], {})
     from ehdmaps.jobs.defaults import SHIPPED  # with the readers of all tables of a job
 
+    problems = Problems()
     if source.lstrip().startswith("{"):
         from ehdmaps.jobs.table import inline
 
         values = inline(source, "BEARING", problems)
-        try:
-            return None if values is None else _of_tables({"bearing": values}, "BEARING")
-        except InputError as error:
-            problems += error.problems
-            return None
+        problems.check()
+        return _of_tables({"bearing": values}, "BEARING")
     is_file = "\0" not in source and os.path.isfile(source)
     if plain_name(source, ROLLERS) and not is_file and source not in SHIPPED:
-        try:
+        with problems.after("BEARING: "):
             return Asked(designated(source), {})
-        except InputError as error:
-            problems += [f"BEARING: {problem}" for problem in error.problems]
-            return None
+        problems.check()
     from ehdmaps.jobs.reader import shipped_jobs
 
     allowed = "a designation such as NU308 or NU210, or a TOML file with [bearing], such as a job"
     if source not in shipped_jobs() and not is_file:
         near = closest(source.upper(), (*BEARINGS, *designations(), *needle_designations()))
-        problems.append(f"BEARING: got {short(source)}{near}; allowed: {allowed}")
-        return None
-    try:
-        return _from_file(source)
-    except InputError as error:
-        problems += error.problems
-        return None
+        raise InputError(f"BEARING: got {short(source)}{near}; allowed: {allowed}")
+    return _from_file(source)
 
 
 def _from_file(source: str) -> Asked:
@@ -179,7 +176,7 @@ def _of_tables(values: dict[str, Any], source: str) -> Asked:
     from ehdmaps.jobs.supply import read_supply, read_surface
     from ehdmaps.jobs.table import Table
 
-    problems: list[str] = []
+    problems = Problems()
     values, typed = taken_out(values, problems)
     top = Table(values, "bearing file", problems)
     top.get("schema")
@@ -197,7 +194,7 @@ def _of_tables(values: dict[str, Any], source: str) -> Asked:
     return Asked(geometry, {}, (), contacts[0].material, oil, supply, surface, tolerances={**stated, **typed})
 
 
-def _refuse_axial(arguments: argparse.Namespace, problems: list[str]) -> None:
+def _refuse_axial(arguments: argparse.Namespace, problems: Problems) -> None:
     """Note options that are for bearings that carry axial load."""
     given = [f"--{name}" for name in ("axial", "outer-speed") if getattr(arguments, name.replace("-", "_"), None)]
     given += ["--tilts"] * bool(getattr(arguments, "tilts", False))
@@ -221,31 +218,14 @@ def _too_many(asked: Asked, operating: Operating) -> str:
     )
 
 
-def _map(path: str | None, problems: list[str]) -> EHDMap | None:
-    """The map."""
-    if path is None:
-        return None
-    from ehdmaps.jobs.show.opening import open_given
-
-    try:
-        return open_given(path)
-    except InputError as error:
-        problems += error.problems
-        return None
-    except EhdmapsError as error:
-        problems += [f"--map: {line}" for line in str(error).splitlines()]
-        return None
-
-
-def _structured(emap: EHDMap | None, structure: str | None, problems: list[str]) -> EHDMap | None:
+def _structured(emap: EHDMap | None, structure: str | None) -> EHDMap | None:
     """The map by the structural law that was chosen."""
     if emap is None or structure is None:
         return emap
-    try:
+    problems = Problems()
+    with problems.after(f"--{STRUCTURE.name}: "):
         return STRUCTURE.change(emap, structure)
-    except InputError as error:
-        problems += [f"--{STRUCTURE.name}: {problem}" for problem in error.problems]
-        return None
+    raise InputError(problems)
 
 
 def _with_map(request: Request) -> Request:
@@ -260,15 +240,11 @@ def _with_map(request: Request) -> Request:
         if wrong := [*wrong, *([OTHER_OIL] if emap.lubricant != request.oil else [])]:
             raise InputError(wrong)
         return request
-    problems: list[str] = []
     # by default films that have to be solved are isothermal
     heat = emap.inlet_heat if emap is not None else request.conditions.inlet_heat if request.physics else None
     speeds, kelvin = request.operating.speeds, request.description.temperature
     made = _table_map(asked.geometry, request.oil, asked.material, speeds, kelvin, heat)
-    made_alike = _structured(made, asked.structure, problems)
-    if made_alike is None:
-        raise InputError(problems)
-    return dataclasses.replace(request, asked=asked._replace(emap=made_alike))
+    return dataclasses.replace(request, asked=asked._replace(emap=_structured(made, asked.structure)))
 
 
 def _table_map(
@@ -372,7 +348,7 @@ def _point(
 
 def _beside(request: Request, points: Points) -> list[str]:
     """Lines on one point with the softest and with the stiffest usual asperities; none of smooth surfaces."""
-    from mbs.commands.one_bearing.request import points_of
+    from mbs.one_bearing.request import points_of
 
     conditions = request.conditions
     if request.description.surface.smooth or len(points) * len(points[0]) > 1:

@@ -1,4 +1,4 @@
-"""`mbs bearing`: one bearing without a scene, of any family.
+"""One bearing without a scene, of any family: what `mbs bearing` and `mbs.library` compute, and exports ask for.
 
 ========================  ============================================================================
 family                    what differs between families of bearings, a row each; what is asked of one

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ehdmaps.errors import AnalysisError, InputError, SolverError
+from ehdmaps.errors import AnalysisError, Problems, SolverError, problems_after
 from ehdmaps.jobs.balls import balls_of
 from ehdmaps.physics.oil_supply import PLAIN
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
@@ -20,16 +20,16 @@ from mbs.bearings.balls.ball_mounting import mounted
 from mbs.bearings.balls.ball_point import BallPoint, ball_dynamic_stiffness
 from mbs.bearings.balls.laws import BallLaw, dry_law
 from mbs.bearings.thermal import Mounting
-from mbs.commands.one_bearing.family import Asked, AtSpeed, Family, Request
-from mbs.commands.one_bearing.linear_files import Oscillating
-from mbs.commands.one_bearing.shared import assumed_clearance, read_rings
+from mbs.one_bearing.family import Asked, AtSpeed, Family, Request
+from mbs.one_bearing.linear_files import Oscillating
+from mbs.one_bearing.shared import assumed_clearance, read_rings
 from mbs.output.one_bearing.balls import BALLS
 from mbs.scene.map_set import TABLE_LAW
 from mbs.scene.specs import BallSpec
 
 if TYPE_CHECKING:
-    from mbs.bearings.balls.films import BallFilms
     from mbs.exports.one_bearing.kind import ExportKind
+    from mbs.scene.locating.ball_films import FilmsOfPoints
 
 FILMS = "films"
 """Law of contacts with films that are read from the table of points, and solved where it has none; `table` reads."""
@@ -41,21 +41,19 @@ _SOURCES = {FILMS: "read from the film table, or solved", TABLE_LAW: "read from 
 _BY_FORMULA = "; thickness of films by the formula of Hamrock and Dowson"
 
 
-def _read(arguments: argparse.Namespace, chosen: Mapping[str, Any], problems: list[str]) -> Asked | None:
+def _read(arguments: argparse.Namespace, chosen: Mapping[str, Any], problems: Problems) -> Asked | None:
     """The bearing of a designation, with its clearance."""
-    option = "BEARING"
-    try:
-        geometry = balls_of(arguments.bearing) or ball_estimate(arguments.bearing)
-        option = "--clearance"
-        if "clearance" in chosen:
-            geometry = geometry.with_clearance(float(chosen["clearance"]))
-        option = "--ring-temperatures"
-        if arguments.ring_temperatures is not None:
-            geometry, _ = mounted(geometry, Mounting(), *read_rings(arguments, chosen, []))
-    except InputError as error:
-        problems += [f"{option}: {problem}" for problem in error.problems]
-        return None
-    return Asked(geometry, {}, tuple(assumed_clearance(geometry, "clearance" in chosen)))
+    with problems:
+        with problems_after("BEARING: "):
+            geometry = balls_of(arguments.bearing) or ball_estimate(arguments.bearing)
+        with problems_after("--clearance: "):
+            if "clearance" in chosen:
+                geometry = geometry.with_clearance(float(chosen["clearance"]))
+        with problems_after("--ring-temperatures: "):
+            if arguments.ring_temperatures is not None:
+                geometry, _ = mounted(geometry, Mounting(), *read_rings(arguments, chosen, Problems()))
+        return Asked(geometry, {}, tuple(assumed_clearance(geometry, "clearance" in chosen)))
+    return None
 
 
 def _words_of(request: Request) -> tuple[str, str]:
@@ -75,21 +73,15 @@ def _force(request: Request) -> BallForce:
 
 def _films(request: Request) -> Callable[[float], BallLaw] | None:
     """Law with the films of an entrainment speed [m/s]."""
-    return (lambda u: _films_at(request, u).law) if request.films else None
+    return (lambda u: _points(request).at(u).law) if request.films else None
 
 
-def _films_at(request: Request, entrainment_speed: float) -> BallFilms:
-    """Films of an entrainment speed [m/s]."""
-    from mbs.bearings.balls.films import ball_films  # with the table of point contacts
+def _points(request: Request) -> FilmsOfPoints:
+    """Films over the speed."""
+    from mbs.scene.locating.ball_films import FilmsOfPoints
 
-    return ball_films(
-        request.force.geometry,
-        request.oil,
-        entrainment_speed,
-        request.description.temperature,
-        solves=request.films == FILMS,
-        conditions=request.conditions,
-    )
+    at = request.force.geometry, request.oil, request.description.temperature, request.conditions
+    return FilmsOfPoints(*at, solves=request.films == FILMS)
 
 
 def _at_speed(request: Request) -> Callable[[float], AtSpeed]:
@@ -100,12 +92,13 @@ def _at_speed(request: Request) -> Callable[[float], AtSpeed]:
         u = request.entrainment_speed(speed)
         if not request.films or u == 0.0:
             return AtSpeed(request.force)
-        if request.films == TABLE_LAW and u < (slowest := _slowest(request)):
-            law = _films_at(request, slowest).faded(geometry, u / slowest)
-            words = f"{RPM.text(speed)}: films fade, as the film table of points begins at {SPEED.text(slowest)}"
+        points = _points(request)
+        if u < points.slowest:
+            words = f"{RPM.text(speed)}: films fade, as the film table of points begins at {SPEED.text(points.slowest)}"
+            law = points(speed, request.operating.outer_speed)
             return AtSpeed(BallForce(geometry, law), notes=(words + _BY_FORMULA,))
         try:
-            films = _films_at(request, u)
+            films = points.at(u)
         except SolverError as error:
             words = f"film table has no films there ({error}); --law {FILMS} solves them"
             if not request.by_default:
@@ -117,13 +110,6 @@ def _at_speed(request: Request) -> Callable[[float], AtSpeed]:
         return AtSpeed(BallForce(geometry, films.law), films)
 
     return at
-
-
-def _slowest(request: Request) -> float:
-    """Entrainment speed at which the film table of points begins [m/s]."""
-    from mbs.bearings.balls.films import slowest_films  # with the table of point contacts
-
-    return slowest_films(request.force.geometry, request.oil, request.description.temperature)
 
 
 def _exported() -> ExportKind:

@@ -9,6 +9,7 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from ehdmaps.errors import Problems
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FilmConditions, OilSupply
 from ehdmaps.physics.solids import STEEL, Material
@@ -22,8 +23,8 @@ if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
     from mbs.bearings.deviating.tables import Deviations
     from mbs.bearings.locating.normal_law import PairLaw
-    from mbs.commands.one_bearing.linear_files import Oscillating
     from mbs.exports.one_bearing.kind import ExportKind
+    from mbs.one_bearing.linear_files import Oscillating
 
 
 class Operating(NamedTuple):
@@ -227,7 +228,7 @@ class Family:
     beside_laws: str
     memory: tuple[str, ...]
     spec: type
-    read: Callable[[argparse.Namespace, Mapping[str, Any], list[str]], Asked | None]
+    read: Callable[[argparse.Namespace, Mapping[str, Any], Problems], Asked | None]
     wrong: Callable[[Asked, Operating], str]
     force: Callable[[Request], Any]
     words_of: Callable[[Request], tuple[str, str]]

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 
 from ehdmaps.choices import texts_of
-from ehdmaps.errors import InputError, short
+from ehdmaps.errors import InputError, Problems, short
 from ehdmaps.outputs import Output, output_problems
 from ehdmaps.physics.lubricant import DEFAULT_OIL
 from ehdmaps.units import TEMPERATURE, Display
 from mbs.commands.common import out_of_place
-from mbs.commands.one_bearing.family import Family
-from mbs.commands.one_bearing.shared import LOADS, read_one
+from mbs.one_bearing.family import Family
+from mbs.one_bearing.shared import LOADS, read_one
 from mbs.output.files import RESULT, described, write_dataset
 from mbs.scene.choices import OPTIONS
 from mbs.scene.fields import FORCE, MICROMETRE
@@ -64,7 +64,7 @@ def run_vibration(arguments: argparse.Namespace, keys: str, family: Family) -> t
         "plot",
         "coupled",
     )
-    problems = out_of_place(arguments, others, "has no part in --vibration; leave it out")
+    problems = Problems(out_of_place(arguments, others, "has no part in --vibration; leave it out"))
     chosen: dict[str, Any] = {}
     for choice in OPTIONS:
         if not (texts := texts_of(arguments, choice)):
