@@ -117,6 +117,31 @@ def test_units_are_the_bearings_of_runs(name, small_map, tmp_path, capsys):
         model.freeInstance()
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["NU308", "6208"])
+def test_films_with_memory_follow_deviations(name, small_map, tmp_path, capsys):
+    """Films that were begun elsewhere in a turn come to rest where those begun there are, as exp(-time) leaves."""
+    given = ["--map", small_map, "--slices", "5"] if name == "NU308" else ["--law", "table"]
+    braces, path = f'{{ name = "{name}", {", ".join(KEYS)} }}', tmp_path / "b.fmu"
+    ask = ["bearing", braces, "--load", "2 kN", "--speed", "400 rpm", *given, "--films", "memory", "-o", str(path)]
+    assert main(ask) == 0, capsys.readouterr().err
+    unit, forces = Unit(path, tmp_path / "unit"), []
+    names = ["pose.y", "speed.inner", "spin.inner"]
+    outputs = ("force.y", "force.z")
+    for begin in (0.0, 0.6):
+        model = unit.stepped(names, [8e-6, SPEED, begin])
+        before = unit.get(model, outputs)
+        for step in range(60):
+            unit.put(model, names, [8e-6, SPEED, 0.6])
+            model.doStep(1e-3 * step, 1e-3)
+        forces.append((before, unit.get(model, outputs)))
+        model.freeInstance()
+    (there, moved), (_, stayed) = forces
+    largest = np.abs(stayed).max()
+    np.testing.assert_allclose(moved, stayed, rtol=0.0, atol=1e-6 * largest)
+    assert np.abs(moved - there).max() > 1e-3 * largest
+
+
 def test_deviations_without_a_use_are_said(capsys):
     braces = f'{{ name = "6208", {KEYS[1]} }}'
     assert main(["bearing", braces, "--load", "1 kN", "--speed", "1500 rpm"]) == 2
