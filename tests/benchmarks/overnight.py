@@ -135,7 +135,7 @@ def times(dataset: xr.Dataset) -> None:
     """Mean processor time a point over bands of load and speed."""
     seconds = dataset["solve_seconds"].transpose("load", "entrainment_speed", "contact", "temperature").values
     loads, speeds = dataset["load"].values / 1e3, dataset["entrainment_speed"].values
-    rows, columns = np.array_split(np.arange(loads.size), BANDS), np.array_split(np.arange(speeds.size), BANDS)
+    rows, columns = (np.array_split(np.arange(axis.size), min(BANDS, axis.size)) for axis in (loads, speeds))
     print(
         f"  {'s a point, mean (largest)':26s}"
         + "".join(f"{speeds[c[0]]:8.2g} to {speeds[c[-1]]:<6.2g}" for c in columns)
