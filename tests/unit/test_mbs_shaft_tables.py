@@ -16,6 +16,7 @@ from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.scene.shafts.new import MACHINES, new_shaft
 from mbs.scene.shafts.rows import csv_rows, csv_sections
+from tests.cases.reports import without_budget
 from tests.conformance.test_shipped import SHORTER
 
 IRON = 'youngs_modulus = "190 GPa", poisson_ratio = 0.28, density = "7200 kg/m^3"'
@@ -460,7 +461,8 @@ def test_a_check_tells_what_will_be_solved(tmp_path, capsys):
 
 @pytest.mark.slow
 def test_every_analysis_runs_on_a_new_scene(tmp_path, monkeypatch, capsys):
-    """With fewer points and a short run-up."""
+    """With fewer points and a short run-up; error budgets have other tests."""
+    without_budget(monkeypatch)
     monkeypatch.chdir(tmp_path)
     assert cli.main(["new", "shaft"]) == 0
     for pattern, short in SHORTER:
