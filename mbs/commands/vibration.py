@@ -122,7 +122,12 @@ def run_vibration(arguments: argparse.Namespace, keys: str, family: Family) -> t
 def _row(words: str, found: RingVibration, law: str) -> str:
     """Bands of a law in a line."""
     low, high = (1e6 * found.band(law)).tolist()
-    return f"  {words:26s}" + "".join(f"{f'{a:.3g} to {b:.3g}':>22s}" for a, b in zip(low, high, strict=True))
+    return f"  {words:26s}" + "".join(f"{f'{_speed(a)} to {_speed(b)}':>22s}" for a, b in zip(low, high, strict=True))
+
+
+def _speed(value: float) -> str:
+    """A velocity [um/s]; what no sensor sees, a tenth of a nanometre a second, is the round-off of a run."""
+    return f"{value:.3g}" if value > 1e-4 else "0"
 
 
 def _envelopes(found: RingVibration) -> list[str]:

@@ -337,6 +337,7 @@ class LocatingForce:
 
     def forget(self) -> None:
         """Drop the places of the elements after the last call, so that the next one is as the first."""
+        raise NotImplementedError
 
     @property
     def last_loads(self) -> FloatArray:

@@ -276,6 +276,10 @@ class TaperedForce(LocatingForce):
         ribs = rows[FIRST_RIB : FIRST_RIB + len(self.ribs)]
         return TaperedLoads(angle, rows[3:6], ribs, np.where(rows[3:5] > 0.0, centre, 0.0), slices)
 
+    def forget(self) -> None:
+        """See `LocatingForce.forget`."""
+        self._rollers[:] = 0.0
+
     @property
     def last_rollers(self) -> FloatArray:
         """Numbers of the rollers at the last call, (Z, `COLUMNS`), see `mbs.bearings.tapered.kernel_structs`."""
