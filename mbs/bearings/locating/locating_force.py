@@ -336,8 +336,10 @@ class LocatingForce:
         return False
 
     def forget(self) -> None:
-        """Drop the places of the elements after the last call, so that the next one is as the first."""
-        raise NotImplementedError
+        """Drop the places of the elements after the last call, so that the next one is as the first.
+
+        Kinds that keep none have nothing to drop.
+        """
 
     @property
     def last_loads(self) -> FloatArray:
