@@ -43,7 +43,7 @@ class Grids:
     more_rows: GridSolution | None = None
     note: str = ""
 
-    def number(self, number: Callable[[GridSolution], Number]) -> tuple[Number, Number, Number]:
+    def number(self, number: Callable[[GridSolution], Number], order: int = 2) -> tuple[Number, Number, Number]:
         """Return a number, the error of its columns (> 0 where more of them lower it), and that of its rows.
 
         The rows' error is of second order from a few rows on. What taking it off changes counts as what is left: with
@@ -53,12 +53,14 @@ class Grids:
         ----------
         number : callable
             Function of a grid's solution.
+        order : int
+            Order by which more columns lower its error.
         """
-        fine = number(self.fine)
+        fine, divisor = number(self.fine), 2.0**order - 1.0
         if self.rows is None:
-            return fine, (number(self.coarse) - fine) / ORDER_DIVISOR, fine * 0.0
+            return fine, (number(self.coarse) - fine) / divisor, fine * 0.0
         rows = number(self.rows)
-        columns = (rows - fine) / ORDER_DIVISOR
+        columns = (rows - fine) / divisor
         if self.more_rows is None:
             left = (number(self.coarse) - rows) / ORDER_DIVISOR
             return fine - left, columns, left

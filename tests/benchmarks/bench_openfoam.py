@@ -180,8 +180,21 @@ def summary(way: str, flow: Flow, found: Found) -> str:
         f"{way}, {flow}: {found.solved} of {found.asked} solved, median {seconds:.2f} s a point, "
         f"{seconds / reynolds:.0f} times reynolds; median differences of {len(found.compared)} by both: "
         f"film {100 * film:.3f} %, "
-        f"c {100 * damping:.2f} %; beyond the bars (!): {beyond}"
+        f"c {100 * damping:.2f} %; beyond the bars (!): {beyond}; within what both state: "
+        + ", ".join(f"{words} {_share(found.compared, name)}" for words, name in _STATED)
     )
+
+
+_STATED = (
+    ("film offset", "film_offset"),
+    ("film compliance", "film_compliance"),
+    ("loss compliance", "loss_compliance"),
+)
+
+
+def _share(found: Sequence[Comparison], name: str) -> str:
+    """Share of differences that the stated errors of both programs explain."""
+    return f"{100.0 * np.mean([each.explained(name) for each in found]):.0f} %"
 
 
 def _median(values: Sequence[float]) -> float:

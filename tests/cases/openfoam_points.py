@@ -113,6 +113,12 @@ class Comparison:
         mine, other = getattr(self.cfd, name), getattr(self.reynolds, name)
         return float((mine - other) / abs(other))
 
+    def explained(self, name: str) -> bool:
+        """Tell whether a difference is less than the errors that both programs state."""
+        return abs(self.difference(name)) < sum(
+            abs(getattr(film, f"{name}_error")) for film in (self.cfd, self.reynolds)
+        )
+
     @property
     def compliance_share(self) -> float:
         """Difference of film compliance over the compliance a b/(p_H R) of the whole contact in the log kernel."""
