@@ -389,7 +389,7 @@ def read_dielectric(text: str | None, problems: Problems) -> Dielectric | None:
 
     Examples
     --------
-    >>> read_dielectric('{ value = 2.2, at = "40 degC", outlet = "series" }', []).outlet
+    >>> read_dielectric('{ value = 2.2, at = "40 degC", outlet = "series" }', Problems()).outlet
     'series'
     """
     if text is None:

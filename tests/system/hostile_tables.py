@@ -521,7 +521,7 @@ MBS_OPTIONS: dict[str, tuple[str, int, str]] = {
     "too many cases": (
         "sweep nu308_rigid" + "".join(f" --clearance {n}um --load-factor 1.{n}" for n in range(1, 7)),
         2,
-        "got 36 combinations; allowed: at most 24",
+        "got 36 combinations; allowed: up to 24 side by side",
     ),
     "a key to vary": ("variants nu308_rigid --law hertz --law formula --vary none 1", 2, "--vary"),
     "one law to compare": ("variants nu308_rigid --law hertz --vary slices 5", 2, "two"),

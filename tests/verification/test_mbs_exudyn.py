@@ -192,7 +192,9 @@ def test_an_angle_is_counted_through_full_turns_and_a_retried_step_is_not_a_step
 
 @pytest.mark.slow
 def test_a_whole_machine_goes_on_in_time_as_ours_and_begins_anew():
-    """2 ms at 500 rpm from a place 1 % away, films with memory, twice: the Newton methods, 1e-8 of the forces.
+    """2 ms at 500 rpm from a place 1 % away, films with memory, twice: parabolas of films, which slices take in turns.
+
+    They are wrong by some 1e-5; Newton's methods go on to where they are no part of it.
 
     Films that follow at once are another machine: by more than 1e-3 of what moves.
     """
@@ -200,7 +202,8 @@ def test_a_whole_machine_goes_on_in_time_as_ours_and_begins_anew():
     for films in ("memory", "slow"):
         system = assemble(SCENE, "formula", clearance=10e-6, films=films).system
         start, step = 1.01 * equilibrium(system, Operation(SPEED)).displacement, 5e-5
-        run = integrate(system, SpeedProfile.constant(SPEED), 40 * step, Settings(step, step, 0.6), start)
+        settings = Settings(step, step, 0.6, residual=1e-12)
+        run = integrate(system, SpeedProfile.constant(SPEED), 40 * step, settings, start)
         ran[films] = run.states.displacement[1:]
     system = assemble(SCENE, "formula", clearance=10e-6, films="memory").system
     there = exu.SystemContainer().AddSystem()
