@@ -99,11 +99,12 @@ def test_many_frequencies_from_one_run_a_grid(fake):
     assert found.compliance.real == pytest.approx(np.full(3, slow.film_compliance), rel=1e-12)
     loss = -found.compliance.imag / (2.0 * np.pi * frequencies)
     assert loss == pytest.approx(slow.loss_compliance / np.array([10.0, 100.0, 1000.0]), rel=1e-12)
-    # and the fake is of second order: a third of the difference is the error, with its sign
+    # and the fake is of second order: four times its error on half the columns, so that the difference, which is stated
+    # of what is of first order, is three times what is left
     assert found.errors.shape == (3, 5)
     assert not found.errors[:, 3:].any()
     share = found.errors[:, 0].real / found.compliance.real
-    assert share == pytest.approx(np.full(3, OF_GRID / (1.0 + OF_GRID)))
+    assert share == pytest.approx(np.full(3, 3.0 * OF_GRID / (1.0 + OF_GRID)))
 
 
 def test_what_the_krylov_space_leaves_is_an_error(fake):
