@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property, partial
 from os import PathLike, fspath
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
@@ -107,6 +107,11 @@ class EHDMap:
     def dataset(self) -> xr.Dataset:
         """All that the map holds; of an old map also the films that follow from it."""
         return self._dataset
+
+    @property
+    def attributes(self) -> Mapping[str, Any]:
+        """What the map states of itself: settings, versions, findings of its check."""
+        return self.dataset.attrs
 
     def axis(self, name: str) -> FloatArray:
         """Values of an axis [N/m], [m/s] or [K], shape (n,).
@@ -362,7 +367,7 @@ class EHDMap:
     @cached_property
     def law_errors(self) -> LawErrors:
         """Bounds of the errors of the laws of this map."""
-        return LawErrors(partial(getattr, self, "dataset"), self.contacts, self.lubricant)
+        return LawErrors(self, self.contacts, self.lubricant)
 
     def film_field(self, contacts: tuple[str, ...] | None = None) -> FilmField:
         """Film between the points, what a law is made from: of the film table, the backbone, or the map's own grid.

@@ -24,10 +24,10 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -40,8 +40,19 @@ from ehdmaps.maps.records import MODEL_ERRORS, SPACING_ERRORS
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 
-if TYPE_CHECKING:
-    import xarray as xr
+
+class MapPoints(Protocol):
+    """What errors are read from: a map, with or without a dataset."""
+
+    @property
+    def attributes(self) -> Mapping[str, Any]:
+        """What it states of itself besides."""
+
+    def axis(self, name: str) -> FloatArray:
+        """Values of an axis; see `ehdmaps.maps.emap.EHDMap.axis`."""
+
+    def points(self, name: str) -> FloatArray | None:
+        """A variable at all points; see `ehdmaps.maps.emap.EHDMap.points`."""
 
 
 class LawChange(NamedTuple):
@@ -175,59 +186,56 @@ class LawErrors:
 
     Parameters
     ----------
-    dataset : xarray.Dataset or callable
-        The map, with what is derived from its films, or what gives it where errors are asked for.
+    source : MapPoints
+        The map; read when errors are first asked for.
     contacts : sequence of LineContact
         Contacts of the map, in the order of its first axis.
     lubricant : Lubricant
         Oil of the map, for the place of the damping valley.
     """
 
-    def __init__(
-        self, dataset: xr.Dataset | Callable[[], xr.Dataset], contacts: Sequence[LineContact], lubricant: Lubricant
-    ) -> None:
-        self._given = dataset
+    def __init__(self, source: MapPoints, contacts: Sequence[LineContact], lubricant: Lubricant) -> None:
+        self._source = source
         self._contacts = {contact.name: (index, contact) for index, contact in enumerate(contacts)}
         self._lubricant = lubricant
 
-    @cached_property
-    def _data(self) -> xr.Dataset:
-        """Points with a speed."""
-        dataset = self._given() if callable(self._given) else self._given
-        return dataset.sel(entrainment_speed=dataset["entrainment_speed"] > 0.0).transpose(*schema.DIMS, ...)
+    def _points(self, name: str) -> FloatArray | None:
+        """A variable at the points with a speed; None where the map does not hold it."""
+        found = self._source.points(name)
+        return None if found is None else found[:, :, self._source.axis("entrainment_speed") > 0.0].astype(np.float64)
 
     @cached_property
     def _axes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Logarithms of loads and speeds, and temperatures."""
-        loads, speeds, kelvins = (self._data[name].values.astype(np.float64) for name in schema.DIMS[1:])
-        return np.log(loads), np.log(speeds), kelvins
+        loads, speeds, kelvins = (self._source.axis(name) for name in schema.DIMS[1:])
+        return np.log(loads), np.log(speeds[speeds > 0.0]), kelvins
 
     @cached_property
     def _checked(self) -> _Checked | None:
         """Findings of the check of the laws."""
-        return _Checked.of(self._data.attrs, "")
+        return _Checked.of(self._source.attributes, "")
 
     @cached_property
     def _in_valley(self) -> _Checked | None:
         """Those in the damping valley."""
-        return _Checked.of(self._data.attrs, "_valley")
+        return _Checked.of(self._source.attributes, "_valley")
 
     @property
     def checked_points(self) -> int:
         """Number of points at which the laws were checked."""
-        attributes = self._data.attrs
+        attributes = self._source.attributes
         points = attributes.get("law_check_usable", attributes.get("tolerance_points"))
         return 0 if self._checked is None or points is None else int(points)
 
     @property
     def has_model_errors(self) -> bool:
         """True where the map states errors of its model."""
-        return any(name in self._data for name in MODEL_ERRORS)
+        return any(self._source.points(name) is not None for name in MODEL_ERRORS)
 
     @property
     def has_spacing_errors(self) -> bool:
         """True where the map states what its laws lose between its points."""
-        return any(name in self._data for name in SPACING_ERRORS)
+        return any(self._source.points(name) is not None for name in SPACING_ERRORS)
 
     @cached_property
     def _read(self) -> tuple[FloatArray, tuple[str, ...]]:
@@ -235,10 +243,8 @@ class LawErrors:
 
         Laws are made without it: from the films of a map alone.
         """
-        data = self._data
-        values = {
-            name: data[name].values.astype(np.float64) for name in ("stiffness", "film_compliance", "loss_compliance")
-        }
+        of_points = ("stiffness", "film_compliance", "loss_compliance", "film_offset")
+        values = {name: points for name in of_points if (points := self._points(name)) is not None}
         needed = ("stiffness", "damping", "film_offset")
         names = (*(f"{name}_error" for name in needed), *MODEL_ERRORS, *SPACING_ERRORS)
         found = {name: self._error(name) for name in names}
@@ -247,7 +253,7 @@ class LawErrors:
         errors = {
             name: np.zeros(values["stiffness"].shape) if error is None else error for name, error in found.items()
         }
-        offset = np.abs(data["film_offset"].values.astype(np.float64))
+        offset = np.abs(values["film_offset"])
         # One array, so that it is read at a speed and temperature at once.
         grid = np.stack(
             [
@@ -265,9 +271,10 @@ class LawErrors:
 
     def _error(self, name: str) -> FloatArray | None:
         """Magnitudes of an error; where it is unknown at some points, the largest known one; None where at all."""
-        if name not in self._data:
+        found = self._points(name)
+        if found is None:
             return None
-        found = np.abs(self._data[name].values.astype(np.float64))
+        found = np.abs(found)
         known = np.isfinite(found)
         return np.where(known, found, found[known].max()) if np.any(known) else None
 

@@ -21,11 +21,21 @@ from pathlib import Path
 REPOSITORY = Path(__file__).parents[2]
 
 
+UNCHECKED = """
+from pathlib import Path
+from ehdmaps.jobs import solvers
+from ehdmaps.jobs.reader import read_job
+from ehdmaps.jobs.make.generate import read_in_memory, write_map
+job = read_job("nu308")
+write_map(read_in_memory(job, solvers.of_map(job)), Path("nu308.nc"), None)
+"""
+
 COMMANDS: dict[str, list[str]] = {
     "python": ["-c", "import numpy, scipy.linalg"],
     "bearing of rollers": ["-m", "mbs", "bearing", "NU308", "--load", "5 kN", "--speed", "1500 rpm"],
     "bearing of balls": ["-m", "mbs", "bearing", "6208", "--load", "2 kN", "--speed", "3000 rpm"],
     "law": ["-c", "import ehdmaps; ehdmaps.law('NU308', 'FVA3')"],
+    "map without its check": ["-c", UNCHECKED],
     "map": ["-m", "ehdmaps", "generate", "nu308"],
     "run-up of the gearbox, 0.2 s": ["-m", "mbs", "runup", "short.toml"],
 }

@@ -414,6 +414,7 @@ def test_import_is_light(statement: str) -> None:
 
 
 BEARING = "mbs bearing NU308 --law hertz --load '5 kN' --speed '1500 rpm' --bands numerics"
+WITH_BANDS = "mbs bearing NU308 --load '5 kN' --speed '1500 rpm'"
 STATICS = "mbs statics nu308_rigid --law hertz --bands numerics"
 FILMS_OF_TABLE = "from ehdmaps.jobs.make import assemble, table_law"
 
@@ -425,6 +426,7 @@ BUDGETS = (
     ("from mbs import Bearing", 20, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps", "numba", "pint")),
     ("from mbs.bearings import bearing_force", 50, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps.law")),
     (BEARING, 116, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps.law", "ehdmaps.maps.emap")),
+    (WITH_BANDS, 195, ("ehdmaps.openfoam", "numba", "matplotlib", "xarray", "pandas")),
     (STATICS, 130, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs.job", "ehdmaps.maps.law", "ehdmaps.maps.emap")),
     (FILMS_OF_TABLE, 101, (SOLVING[1], "numba", "matplotlib", "xarray", "pandas", "mbs")),
     ("from mbs.analyses import campbell, runup", 235, ("numba",)),

@@ -8,7 +8,8 @@ import pytest
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import valley_loads
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.law_errors import NOT_IN, LawChange, LawErrors, quantile_of
+from ehdmaps.maps.law_errors import NOT_IN, LawChange, quantile_of
+from ehdmaps.maps.schema import typed, variable
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD, dataset_of
 
 BOTH = ("inner", "outer")
@@ -34,7 +35,14 @@ def stated():
 
 
 def errors_of(dataset, **attributes):
-    return LawErrors(dataset.assign_attrs(attributes), CONTACTS, OIL)
+    return EHDMap(dataset.assign_attrs(attributes)).law_errors
+
+
+def with_model_errors(dataset, stiffness, damping):
+    """The map with model errors, the same at all points."""
+    errors = (("stiffness_model_error", stiffness), ("damping_model_error", damping))
+    shape = dataset["stiffness"].shape
+    return dataset.assign({name: typed(variable(name), np.full(shape, value)) for name, value in errors})
 
 
 def test_a_contact_at_a_node_has_what_the_map_states(stated):
@@ -77,9 +85,7 @@ def test_errors_of_the_law_and_of_the_model_are_added(stated):
     assert np.all((more > 0.01 * (1.0 - 1e-9)) & (more < 0.01 + 2.0 * 0.001))
     film = stated["film_offset"].sel(entrainment_speed=SPEED, temperature=WARM).sum("contact")
     np.testing.assert_allclose(checked.film_offset - plain.film_offset, 0.0005 * film, rtol=1e-6)
-    modelled = stated.assign(
-        stiffness_model_error=0.0 * stated["stiffness"] + 0.03, damping_model_error=0.0 * stated["stiffness"] - 0.04
-    )
+    modelled = with_model_errors(stated, 0.03, -0.04)
     both = errors_of(modelled).bounds(BOTH, loads, SPEED, WARM)
     np.testing.assert_allclose(both.stiffness - plain.stiffness, 0.03, rtol=1e-6)
     more = both.damping - plain.damping
@@ -106,9 +112,11 @@ def test_what_is_not_stated_is_said(stated):
     assert errors_of(stated).bounds(BOTH, np.array([1e4]), 0.0, WARM) is None
     words = errors_of(stated).words
     assert "it was not checked" in words and "none stated" in words and words.endswith(NOT_IN)
-    whole = errors_of(stated.assign(stiffness_model_error=stated["stiffness"] * 0.0), **CHECKED).words
+    whole = errors_of(with_model_errors(stated, 0.0, 0.0), **CHECKED).words
     assert "95 % of 100 checked points" in whole and "errors of its model;" in whole and "without" not in whole
-    unknown = stated.assign(damping_error=stated["damping_error"] * np.nan)
+    unknown = stated.drop_vars(["stiffness_error", "damping_error", "stiffness", "damping", "approach"])
+    unknown["loss_compliance_error"] = unknown["loss_compliance_error"] * np.nan
+    unknown["loss_compliance_error"].attrs = stated["loss_compliance_error"].attrs
     assert "damping_error (not known)" in errors_of(unknown).words
     assert quantile_of("none: no film to relate to") is None
 

@@ -94,6 +94,11 @@ class ReadMap(EHDMap):
 
         return EHDMap(read_in_memory(self._job, self._read)).dataset
 
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """Nothing that its laws or their errors ask for: they were not checked."""
+        return {}
+
     def axis(self, name: str) -> FloatArray:
         """Values of an axis; see `EHDMap.axis`."""
         job = self._job
