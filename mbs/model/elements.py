@@ -320,6 +320,15 @@ class OnRings(ElementDefaults):
         """Source of its films in words; empty where it is that of the law of the system."""
         return ""
 
+    def forget(self, operation: Operation) -> None:
+        """Drop what the last call left as a start for the next one, so that results do not depend on it.
+
+        Parameters
+        ----------
+        operation : Operation
+            Speed of the calls to come.
+        """
+
     def deviate(self, added: FloatArray | None) -> None:
         """Add approaches, and their rates, to its contacts until it is told otherwise.
 

@@ -21,7 +21,7 @@ import scipy.linalg as sl
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
-from mbs.model.elements import Operation
+from mbs.model.elements import OnRings, Operation
 from mbs.model.relaxation import Relaxation
 from mbs.model.system import System
 
@@ -126,6 +126,9 @@ def _found(system: System, operation: Operation, start: FloatArray | None, toler
     loads = system.loads(operation.time)
     rest = np.zeros(system.size)
     weight = 1.0 / np.sqrt(np.diag(system.mass))
+    for connected in system.elements:
+        if isinstance(connected.element, OnRings):
+            connected.element.forget(operation)
 
     def residual(q: FloatArray) -> tuple[FloatArray, float]:
         internal = -system.stiffness @ q

@@ -196,6 +196,35 @@ def goes_on_after_a_refusal(kind):
     np.testing.assert_allclose(at.force(at.rest), before, rtol=1e-9, atol=1e-9 * np.abs(before).max())
 
 
+def forgets_what_was_asked(kind):
+    """Statics, and the force, K and C there, are to the last digit those of a machine that was asked nothing before. A
+    call at one pose starts from where the last one left the elements: round-off of their balances, which K and C have
+    some thousand times."""
+    law, operation = FILMS if kind.films else DRY, Operation(SPEED)
+
+    def answers(system):
+        rest = equilibrium(system, operation).displacement
+        place = system.elements[0].transform @ rest
+        return place, (rest, *system.elements[0].element.evaluate(place, 0.0 * place, operation)[:3])
+
+    text = parse_scene(kind.text(), "machine", "machine.toml")
+    new, asked = assemble(text, law).system, assemble(text, law).system
+    place, expected = answers(new)
+    for speed, part in ((20.0, 1.0), (0.0, 0.5), (2.0 * SPEED, 0.7)):
+        rest = equilibrium(asked, Operation(speed)).displacement
+        for one in asked.elements:
+            where = part * (one.transform @ rest)
+            one.element.evaluate(where, 0.0 * where, Operation(speed, 0.2))
+    for alone, after in zip(
+        new.elements[0].element.evaluate(place, 0.0 * place, operation)[:3],
+        asked.elements[0].element.evaluate(place, 0.0 * place, operation)[:3],
+        strict=True,
+    ):
+        np.testing.assert_allclose(after, alone, rtol=0.0, atol=1e-11 * np.abs(alone).max())
+    for alone, after in zip(expected, answers(asked)[1], strict=True):
+        np.testing.assert_array_equal(after, alone)
+
+
 def passes(kind):
     """A part of a pitch further on it is the bearing of the machine that has turned so far, in films and forces."""
     at = bench(kind, FILMS, SPEED)
@@ -219,6 +248,7 @@ CLAIMS = (
     creeps,
     refuses_no_numbers,
     goes_on_after_a_refusal,
+    forgets_what_was_asked,
     passes,
 )
 WITH_CONTACTS = (definite, closed_paths, lifts_off, remembers, creeps, passes)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import dataclasses
+import inspect
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -149,6 +150,16 @@ def test_a_new_kind_is_in_statics_and_modes(model):
     assert along == pytest.approx(
         math.sqrt(2 * PADS * STIFFNESS * math.sin(ANGLE) ** 2 / 8.0) / (2.0 * math.pi), rel=1e-3
     )
+
+
+def test_a_new_kind_takes_few_lines():
+    """Its catalogue, its kinematics and what a scene holds of it, beside three rows: 50 lines of code are enough."""
+    lines = 0
+    for part in (Pads, PadForce, PadSpec):
+        text = ast.unparse(ast.parse(inspect.getsource(part)))  # without comments, blanks and folds
+        docstrings = text.count('"""') // 2
+        lines += len([line for line in text.splitlines() if line.strip()]) - docstrings
+    assert lines <= 50
 
 
 def test_a_step_in_time_is_that_of_rest(model):

@@ -187,6 +187,10 @@ class LocatingElement(OnRings):
         """Speed of the cage as a multiple of the system's, by the nominal contact angle."""
         return float(self.force.geometry.cage_speed(self.inner_spin, self.outer_spin))
 
+    def forget(self, operation: Operation) -> None:
+        """See `OnRings.forget`."""
+        self.force_at(operation).forget()
+
     def deviate(self, added: FloatArray | None) -> None:
         """See `OnRings.deviate`; of the force at the speed of the last call."""
         for force in (self.force, *self._made.values()):
@@ -226,8 +230,8 @@ class LocatingElement(OnRings):
 
         Whatever was asked before: results do not depend on the places from which a search started.
         """
+        self.forget(operation)
         force, pose, conditions = self.force_at(operation), self.pose(displacement), self.conditions(operation)
-        force.forget()
         return Settled(force, pose, conditions, force.loads(pose, **conditions))
 
     def loads(self, displacement: FloatArray, operation: Operation) -> Any:
