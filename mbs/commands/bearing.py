@@ -36,8 +36,11 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         stated = getattr(arguments, "deviations", {})
         keys = "\n".join(f"{key} = {_braced(value)}" for key, value in stated.items())
         return run_vibration(arguments, keys, family_of(arguments.bearing, arguments.axial))
-    if not arguments.load:
-        raise InputError('--load: missing; allowed: on the inner ring, such as "5 kN", or a history, FILE.csv')
+    if not arguments.load and arguments.axial is None:
+        unknown = not_served(arguments.bearing)
+        missing = '--load: missing; allowed: on the inner ring, such as "5 kN", or a history, FILE.csv'
+        raise InputError([*([f"BEARING: {unknown}"] if unknown else []), missing])
+    arguments.load = arguments.load or [["0 N"]]  # an axial load alone
     history = [text for given in arguments.load for text in given if text.strip().lower().endswith(HISTORY)]
     if history:
         from mbs.one_bearing.history import run_history

@@ -16,12 +16,13 @@ from ehdmaps.errors import InputError, Problems
 from ehdmaps.inputs import first_bytes, read_text
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.catalogue import designated, designations
+from ehdmaps.physics.designations.families import nearest
 from ehdmaps.physics.designations.reader import ROLLERS, plain_name
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.rollers.needle_catalogue import needle_designations
 from ehdmaps.physics.solids import Material
 from ehdmaps.physics.surface import Surface
-from ehdmaps.units import OF_JOBS, closest, read_tolerances, short
+from ehdmaps.units import OF_JOBS, read_tolerances, short
 from mbs.analyses.bearing_point import bearing_point
 from mbs.bearings import laws
 from mbs.bearings.bearing import MOST_COUPLED, Bearing
@@ -137,7 +138,7 @@ def read_given(source: str) -> Asked:
 
     allowed = "a designation such as NU308 or NU210, or a TOML file with [bearing], such as a job"
     if source not in shipped_jobs() and not is_file:
-        near = closest(source.upper(), (*BEARINGS, *designations(), *needle_designations()))
+        near = nearest(source, (*BEARINGS, *designations(), *needle_designations()))
         raise InputError(f"BEARING: got {short(source)}{near}; allowed: {allowed}")
     return _from_file(source)
 

@@ -184,7 +184,7 @@ def test_check_reads_it(capsys):
 
 
 FAMILIES = {
-    "spherical roller bearing": ("22208", "22308 E/C3", "23022"),
+    "spherical roller bearing": ("22208", "22310-E1-K", "23024", "SKF 22208 E", "BS2-2210-2RSK", "239/500"),
     "self-aligning ball bearing of another series": ("11208", "126"),
     "thrust ball bearing with a spherical washer": ("53208", "54208"),
     "thrust ball bearing of two directions": ("52208",),
@@ -194,7 +194,7 @@ FAMILIES = {
     "double row angular contact ball bearing of another series": ("3008", "3808"),
     "drawn cup needle roller bearing": ("BK1616", "HN2020"),
     "needle roller bearing of another type": ("NKI40/20", "NK40/20"),
-    "tapered roller bearing of another series": ("33208", "33010"),
+    "tapered roller bearing of another series": ("33208", "33010", "T7FC045"),
     "deep groove ball bearing of another series": ("62208", "63008", "6708"),
     "miniature deep groove ball bearing": ("608", "625-2RS"),
     "angular contact ball bearing of another series": ("70808C", "70914 ACD/P4"),
@@ -202,6 +202,7 @@ FAMILIES = {
     "cylindrical roller thrust bearing": ("81208",),
     "toroidal roller bearing": ("C2208",),
     "insert ball bearing": ("UC208",),
+    "track roller": ("NUTR25", "KR22", "NATV 20 PP", "NA2203.2RS", "LR5204"),
 }
 
 

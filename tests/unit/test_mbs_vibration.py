@@ -91,6 +91,7 @@ def test_the_command_has_bands_and_the_order_of_a_spall(tmp_path, capsys):
         (["6205", "--vibration", "1 kg", "--speed", "3 rpm"], "--speed: has no part in --vibration"),
         (["6205", "--vibration", "1 kg", "--films", "memory"], "--films: has no part in --vibration; allowed: --law"),
         (["6205"], "--load: missing; allowed: on the inner ring"),
+        (["22208"], "BEARING: got '22208', spherical roller bearing: not yet"),
     ],
 )
 def test_what_the_command_does_not_take(given, said, capsys):

@@ -123,6 +123,18 @@ def test_full_complement_rollers_have_both_ratings_of_their_catalogue(name, rati
     assert ribbed_way(name) == "+x" and boundary(name).series.startswith("NCF")
 
 
+def test_high_capacity_rollers_are_those_of_nu2240():
+    """E by F = 241 mm (Koyo); C by ISO 281 is within 3 %, half of a roller in 19, of SKF's 1460 kN, raised by 15 %."""
+    found = estimate("NCF 2240 ECJB")
+    assert found.inner_raceway_diameter == pytest.approx(0.241) and found.rollers == 19
+    assert 1.15 * cylindrical_ratings(found)[0] == pytest.approx(1.46e6, rel=0.03)
+    assert ribbed_way("SKF NCF 2240 ECJB/C3") == "+x" and estimate("NCF2240") == found
+    assert "whose rollers a cage parts" in found.estimated
+    for other in ("NCF 2240 V", "NCF 2240 CV", "NCF 2238 ECJB", "NCF 2244 ECJB/PEX"):
+        with pytest.raises(InputError, match="other rollers than tables here have; allowed: without it"):
+            estimate(other)
+
+
 @pytest.mark.parametrize("name", ["NU406", "NU219X", "NU1004", "NU221", ""])
 def test_other_designations_are_refused(name):
     with pytest.raises(

@@ -106,7 +106,7 @@ def test_the_command_asks_for_an_axial_load(capsys):
     ask = ["bearing", "51208", "--speed", "1500 rpm", "--law", "hertz"]
     assert main([*ask, "--load", "1 kN"]) == 1
     assert "a thrust bearing carries a positive axial load alone" in capsys.readouterr().err
-    assert main([*ask, "--load", "0 N", "--axial", "5 kN"]) == 0
+    assert main([*ask, "--axial", "5 kN"]) == 0
     out = capsys.readouterr().out
     assert "a_ISO of thrust bearings: not yet" in out and "clearance" not in out.replace("clearance 0", "clearance")
     assert "51208: thrust ball bearing" in out

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 
 from ehdmaps.errors import InputError, closest, short
-from ehdmaps.physics.designations.reader import BALLS, ROLLERS, TAPERED, plain_name
+from ehdmaps.physics.designations.reader import BALLS, MAKER, ROLLERS, TAPERED, plain_name
 
 SERVED = (
     "deep groove balls 618, 619, 160, 60, 62, 63, 64; angular contact balls 718, 719, 70, 72, 73, two rows 32, 33, "
@@ -22,8 +22,10 @@ _TAIL = r"(?![0-9])[A-Z0-9 /,.+-]*"
 _FAMILIES = tuple(
     (re.compile(pattern + _TAIL), words)
     for pattern, words in (
-        (r"(?:213|222|223|230|231|232|233|238|239|240|241|BS2)[ -]?\d\d", "spherical roller bearing"),
-        (r"(?:292|293|294)[ -]?\d\d", "spherical roller thrust bearing"),
+        (r"(?:BS2-22|(?:WS)?2(?:[1-3]3|[23][0-2]|38|39|40|41))[ -]?(?:\d\d|/\d{3,4})", "spherical roller bearing"),
+        (r"(?:292|293|294)[ -]?(?:\d\d|/\d{3,4})", "spherical roller thrust bearing"),
+        (r"(?:NUTR|NUKR|NATR|NATV|PWT?R|PWKR|KRV?E?|R?STO|LRB?|CFE?|RNA22|NA22)[ -]?\d[\d./-]*", "track roller"),
+        (r"T[1-7][A-G][B-E][ -]?\d{3}", "tapered roller bearing of another series"),
         (r"C[ -]?(?:22|23|30|31|32|39|40|41|49|50|59|60|69)[ -]?\d\d", "toroidal roller bearing"),
         (r"(?:112|113)[ -]?\d\d|1(?:08|26|27|29|35)", "self-aligning ball bearing of another series"),
         (r"(?:532|533|534|542|543|544)[ -]?\d\d", "thrust ball bearing with a spherical washer"),
@@ -36,7 +38,7 @@ _FAMILIES = tuple(
         (r"QJF[ -]?\d{3,4}", "four-point contact ball bearing"),
         (r"(?:NNU?|NNTR?)[ -]?\d{4,5}", "double row cylindrical roller bearing"),
         (r"(?:NNCF?|NNCL|NNF|NCF|NCL|NJG|NJF|SL|E(?=50))[ -]?\d{4,6}", "full complement cylindrical roller bearing"),
-        (r"(?:RNU|RN|NF|NP|NH|NUB|NJP|NUJ|NFP)[ -]?\d{3,4}", "cylindrical roller bearing of another type"),
+        (r"(?:RNU|RN|NF|NP|NH|NUH|NUB|NJP|NUJ|NFP)[ -]?\d{3,4}", "cylindrical roller bearing of another type"),
         (r"(?:BK|HN|RHNA?)[ -]?\d{4}", "drawn cup needle roller bearing"),
         (r"(?:NKI[ABS]?|NKS|NKXR?|NK|NXZ?|R?NAO|NAX[IRK]*)[ -]?\d[\dX*/-]*", "needle roller bearing of another type"),
         (r"R?NA[ -]?(?:48|69)[ -]?\d\d", "needle roller bearing of another series"),
@@ -73,10 +75,10 @@ def not_served(text: str) -> str:
     >>> not_served("22208 E/C3")[:51], not_served("NU208"), not_served("housing")
     ("got '22208 E/C3', spherical roller bearing: not yet", '', '')
     """
-    typed = text.strip()
+    typed, plain = text.strip(), MAKER.sub("", text.strip())
     if len(typed) > _LONGEST or _FILE.search(typed.lower()) or plain_name(typed, _ALL):
         return ""
-    upper = typed.upper()
+    upper = plain.upper()
     if _NO_ANGLE.fullmatch(upper):
         name = upper[:5].replace(" ", "")[:4]
         return (
@@ -110,6 +112,30 @@ def words_for_lines(text: str) -> str:
     )
 
 
+def nearest(designation: str, known: Iterable[str]) -> str:
+    """Say ' (did you mean ...?)' where a designation that is known is close and of the same type; else nothing.
+
+    Parameters
+    ----------
+    designation : str
+        Designation as it was typed.
+    known : iterable of str
+        Designations that are known.
+
+    Examples
+    --------
+    >>> nearest("nu2O8", ("NU208", "NJ208")), nearest("KR22", ("HK2220", "NU222"))
+    (" (did you mean 'NU208'?)", '')
+    """
+    text = MAKER.sub("", designation.strip()).upper()
+    return closest(text, tuple(name for name in known if _type(name) == _type(text)))
+
+
+def _type(name: str) -> str:
+    """Letters with which a designation begins; of one without letters its first figure."""
+    return re.match("[A-Z]+|.?", name).group()  # type: ignore[union-attr]
+
+
 def not_known(designation: str, kind: str, known: Iterable[str], allowed: str, words: str = "") -> InputError:
     """The error of a designation that a catalogue does not have.
 
@@ -128,5 +154,5 @@ def not_known(designation: str, kind: str, known: Iterable[str], allowed: str, w
     """
     if words := words or not_served(designation):
         return InputError(f"bearing designation: {words}")
-    near = closest(designation.upper(), tuple(known))
+    near = nearest(designation, known)
     return InputError(f"{kind} designation: got {short(designation)}{near}; allowed: {allowed}")

@@ -40,14 +40,15 @@ class _Kind(NamedTuple):
     suffixes: str = ""
 
 
-_PRECISE = "precise cylindrical roller bearing"
+_PRECISE, _FULL = "precise cylindrical roller bearing", "full complement cylindrical roller bearing"
 _KINDS = (
     _Kind(CYLINDRICAL, r"(NUP|NU|NJ|N)[ -]*(22|23|2|3)[ -]?(\d\d)"),
     _Kind(CYLINDRICAL, r"(NUP|NU|NJ|N)[ -]*(10)[ -]?(\d\d)", _PRECISE),
-    _Kind(CYLINDRICAL, r"(NCF)[ -]*(18|22|29|30)[ -]?(\d\d)(?:[ -]?C?V)?"),
+    _Kind(CYLINDRICAL, r"(NCF)[ -]*(22)[ -]?(40)", "high capacity cylindrical roller bearing"),
+    _Kind(CYLINDRICAL, r"(NCF)[ -]*(18|22(?![ -]?40)|29|30)[ -]?(\d\d)(?:[ -]?C?V)?", _FULL),
     _Kind(CYLINDRICAL, r"(NN)[ -]*(30)[ -]?(\d\d)", _PRECISE),
     _Kind(CYLINDRICAL, r"(NNU)[ -]*(49)[ -]?(\d\d)(?:[ -]?B)?", _PRECISE),
-    _Kind(CYLINDRICAL, r"(NNCF)[ -]*(50)[ -]?(\d\d)(?:[ -]?C?V)?"),
+    _Kind(CYLINDRICAL, r"(NNCF)[ -]*(50)[ -]?(\d\d)(?:[ -]?C?V)?", _FULL),
     _Kind(NEEDLE, r"(R?NAV?)[ -]?(49)[ -]?(\d\d)"),
     _Kind(DRAWN_CUP, r"(HK)[ -]?(\d\d)[ -]?(\d\d)(?:[CF]|TN|TV)?"),
     _Kind(NEEDLE_CAGE, r"(K) ?(\d+[X*]\d+[X*]\d+)"),
@@ -69,6 +70,9 @@ _ISO_NAMES = {"68": "618", "69": "619", "78": "718", "79": "719", "52": "32", "5
 
 _OF_GMN = re.compile(r"^S ?6(0|2|18|19) ?(\d\d) ?([CE])(?![0-9])")
 """Spindle bearings of GMN: S 6014 C is a 7014C, E has 25 degrees."""
+
+MAKER = re.compile(r"^(?:SKF|SNFA|FAG|INA|Schaeffler|NSK|NTN|SNR|Koyo|JTEKT|Nachi|Timken|GMN)[ -]+(?=.)", re.IGNORECASE)
+"""Name of a maker before a designation, which decides nothing."""
 
 _OF_SPINDLES = ("B", "HCB", "XCB")
 """Prefixes of a maker whose suffix E is an angle of 25 degrees."""
@@ -148,7 +152,7 @@ def read_designation(text: str) -> Designation | None:
     ['7005C', '7014C HC', '7014AC HC', '71914C']
     >>> read_designation("22208")
     """
-    upper = _OF_GMN.sub(r"B7\1\2\3", text.strip().upper())
+    upper = _OF_GMN.sub(r"B7\1\2\3", MAKER.sub("", text.strip()).upper())
     if len(upper) > _LONGEST:
         return None
     for row, pattern in _PATTERNS:
