@@ -173,14 +173,14 @@ def _stated_deviations(arguments: argparse.Namespace, asked: Asked | None, probl
     if not (given := getattr(arguments, "deviations", None)) or asked is None:
         return None
     from ehdmaps.jobs.table import Table
-    from mbs.scene.locating.deviations import elements_of, stated_deviations  # with what few bearings have
+    from mbs.scene.locating.deviations import stated_deviations  # with what few bearings have
 
     if ending_of(arguments.output) not in (SOURCE, UNIT):
         problems.append(
             f"BEARING: got {', '.join(given)}, by which points are not changed; allowed: with -o NAME{SOURCE} or "
             f"NAME{UNIT}, and in scenes"
         )
-    return stated_deviations(Table(given, "BEARING", problems), elements_of(asked.geometry))
+    return stated_deviations(Table(given, "BEARING", problems), asked.geometry.bodies)
 
 
 def points_of(request: Request) -> list[list[Any]]:

@@ -21,7 +21,6 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, VALLEY_OIL_NUMBER
 from ehdmaps.physics.lubricant import Lubricant
@@ -217,9 +216,9 @@ def switched(found: Sequence[Verdict]) -> Mapping[str, str]:
 
 def _lines(entry: Needed) -> tuple[LineContact, ...]:
     """The inner and the outer contact of a bearing; none of balls, whose contacts are points."""
-    if isinstance(entry.geometry, BearingGeometry):
-        return entry.geometry.contacts(STEEL, "iso16281")
-    return () if entry.of_points else cylinder_of(entry.geometry).contacts(STEEL, "iso16281")
+    if entry.of_points:
+        return ()
+    return (entry.geometry if entry.mapped else cylinder_of(entry.geometry)).contacts(STEEL, "iso16281")
 
 
 def _worst(

@@ -29,7 +29,6 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.units import LOAD, RPM, SPEED, TEMPERATURE, Display, quantity
 from mbs.analyses.operating import held
-from mbs.bearings.bearing_element import BearingElement
 from mbs.linearised.averaged import pitch
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
@@ -86,6 +85,8 @@ class Needed:
         How much diametral clearance the films take up at the highest speed [m]; 0 where no map is made.
     of_points : bool
         Whether its contacts are points, else lines.
+    mapped : bool
+        Whether its bearings have a map, as cylindrical rollers do.
     """
 
     geometry: Any
@@ -96,11 +97,7 @@ class Needed:
     static_load: float
     film_room: float
     of_points: bool = False
-
-    @property
-    def mapped(self) -> bool:
-        """True where its bearings have a map, as cylindrical rollers do."""
-        return isinstance(self.geometry, BearingGeometry)
+    mapped: bool = True
 
     @property
     def display(self) -> Display:
@@ -271,7 +268,7 @@ def needed_ranges(
     groups: dict[object, list[tuple[Any, float, float]]] = {}
     one: Any
     for one, load, room in zip(bearings, static_loads, rooms, strict=True):
-        mapped = isinstance(one, BearingElement)
+        mapped = not one.locating
         key = same_contacts(one.bearing.geometry) if mapped else one.force.same_films
         groups.setdefault(key, []).append((one, load, room))
     found = []
@@ -285,7 +282,7 @@ def needed_ranges(
                 "equilibrium of the scene, so that no range can be told; give the scene loads, spins, or a smaller "
                 "clearance"
             )
-        mapped, of_points = isinstance(one, BearingElement), getattr(one.force, "of_points", False)
+        mapped, of_points = not one.locating, getattr(one.force, "of_points", False)
         highest = margin * load
         found.append(
             Needed(
@@ -297,6 +294,7 @@ def needed_ranges(
                 static_load=load,
                 film_room=max(taken),
                 of_points=of_points,
+                mapped=mapped,
             )
         )
     return tuple(found)

@@ -311,7 +311,7 @@ def _cages(scene: Scene) -> Iterator[Unknown]:
         for index, entry in enumerate(scene.of_all_kinds):
             # a lattice: no two cages go round together
             place = (k / CAGES * (1, 3, 5, 7)[index % 4] + 0.5 / CAGES) % 1.0
-            pitch = 2.0 * math.pi / elements_of(entry)
+            pitch = 2.0 * math.pi / entry.geometry.rolling_elements
             by = place * pitch if stated is None else (2.0 * place - 1.0) * min(stated.size, 0.5 * pitch)
             changed = with_bearing(changed, entry.name, _turned(entry.start_angle + by))
         looks.append(changed)
@@ -333,12 +333,6 @@ def _with_offset(scene: Scene, bearing: str, offset: float) -> Scene:
 def _at(change: Callable[..., Scene], *values: object, **fields: object) -> Callable[[], Scene]:
     """Maker of a changed scene, called when it is asked for."""
     return lambda: change(*values, **fields)
-
-
-def elements_of(entry: BearingSpec | LocatingSpec) -> int:
-    """Number of rolling elements of a bearing."""
-    count: int = entry.geometry.rolling_elements
-    return count
 
 
 def clearance_of(entry: BearingSpec | LocatingSpec) -> float | None:

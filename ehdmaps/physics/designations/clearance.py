@@ -172,6 +172,11 @@ class Named:
         return self.rollers
 
     @property
+    def bodies(self) -> int:
+        """Number of its rolling elements; balls with four contacts count once."""
+        return self.rolling_elements
+
+    @property
     def row_elements(self) -> int:
         """Number of the rolling elements of a row."""
         return self.rollers

@@ -145,6 +145,11 @@ class BallGeometry(Named):
         return self.balls * len(self.rows)
 
     @property
+    def bodies(self) -> int:
+        """Number of its balls; those with four contacts count once."""
+        return self.balls * self.ball_rows
+
+    @property
     def thrust(self) -> bool:
         """Tell whether its grooves face each other along the axis: a thrust bearing, without a radial clearance."""
         return abs(self.contact_angle) == LARGEST_ANGLE

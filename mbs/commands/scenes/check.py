@@ -7,7 +7,6 @@ import math
 from collections.abc import Iterator
 
 from ehdmaps.errors import InputError
-from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry
 from ehdmaps.units import LENGTH, RPM, SPRING
 from mbs.analyses.campbell import campbell_problems
 from mbs.analyses.hammer import hammer_problems
@@ -127,8 +126,8 @@ def _located(spec: LocatingSpec) -> str:
     words = [spec.elements]
     if geometry.has_clearance:
         words.append(f"clearance {MICROMETRE.text(geometry.clearance)}")
-    if isinstance(geometry, RibbedGeometry):
-        words.append(f"ribs carry {geometry.ways}, axial clearance {MICROMETRE.text(geometry.axial_clearance)}")
+    if ways := getattr(geometry, "ways", ""):  # of rollers between ribs
+        words.append(f"ribs carry {ways}, axial clearance {MICROMETRE.text(geometry.axial_clearance)}")
     words += [f"contact angle {abs(angle):.3g} deg"] * (angle != 0.0) + ["mirrored"] * (angle < 0.0)
     words += [f"inner ring offset by {MICROMETRE.text(spec.axial_offset)}"] * (spec.axial_offset != 0.0)
     return f"{geometry.title}{estimated}, {', '.join(words)}"

@@ -7,7 +7,6 @@ import math
 from typing import Any
 
 from ehdmaps.jobs.table import Table
-from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.units import short
 from mbs.bearings.deviating.tables import PARTS, Deviations, Spall, Wave, spectrum
 from mbs.scene.fields import DEGREE, MICROMETRE
@@ -40,7 +39,7 @@ def read_deviations(section: Table, spec: Any) -> Any:
             if section.get(key) is not None:
                 section.note(key, "has no effect on a bearing by matrices; allowed: bearings with rolling elements")
         return spec
-    found = stated_deviations(section, MOST_WAVES if spec is None else elements_of(spec.geometry))
+    found = stated_deviations(section, MOST_WAVES if spec is None else spec.geometry.bodies)
     if spec is None or found == Deviations():
         return spec
     if isinstance(spec, BearingSpec) and spec.between_ribs is not None:
@@ -61,19 +60,6 @@ def stated_deviations(section: Table, count: int) -> Deviations:
     waves = [wave for table in section.tables("waviness", "a list of tables") for wave in _waves(table, count)]
     spalls = [one for table in section.tables("spall", "a list of tables") if (one := _spall(table, count)) is not None]
     return Deviations(tuple(waves), tuple(spalls), _sizes(section, count))
-
-
-def elements_of(geometry: Any) -> int:
-    """Number of rolling elements of a bearing of any kind; balls with four contacts once.
-
-    Parameters
-    ----------
-    geometry : BearingGeometry, BallGeometry or TaperedGeometry
-        The bearing.
-    """
-    if isinstance(geometry, BallGeometry):
-        return int(geometry.balls * geometry.ball_rows)
-    return int(geometry.rolling_elements)
 
 
 def _element(table: Table, on: str | None, count: int) -> int | None:
