@@ -110,7 +110,7 @@ class EHDMap:
 
     @property
     def attributes(self) -> Mapping[str, Any]:
-        """What the map states of itself: settings, versions, findings of its check."""
+        """Statements of the map on itself: settings, versions, findings of its check."""
         return self.dataset.attrs
 
     def axis(self, name: str) -> FloatArray:

@@ -42,11 +42,11 @@ from ehdmaps.physics.lubricant import Lubricant
 
 
 class MapPoints(Protocol):
-    """What errors are read from: a map, with or without a dataset."""
+    """Source of errors: a map, with or without a dataset."""
 
     @property
     def attributes(self) -> Mapping[str, Any]:
-        """What it states of itself besides."""
+        """Its other statements on itself."""
 
     def axis(self, name: str) -> FloatArray:
         """Values of an axis; see `ehdmaps.maps.emap.EHDMap.axis`."""
