@@ -89,7 +89,7 @@ def bearing(
     load, speed : str or sequence of str
         Radial loads on the inner ring, such as "5 kN", and its speeds, such as "1500 rpm".
     axial, outer_speed : str, optional
-        Axial load on the inner ring, and speed of the outer one, of balls, tapered rollers, NJ, NUP and NCF.
+        Axial load on the inner ring, and speed of the outer one, of balls, tapered rollers, NJ, NUP, NCF and NNCF.
     tilts : bool
         Whether the inner ring of such a bearing tilts freely.
     direction : str

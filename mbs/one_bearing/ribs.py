@@ -81,7 +81,7 @@ def _axial_of_ribs(asked: Asked, operating: Operating) -> str:
     if axial > 0.0 or (axial < 0.0 and both):
         return ""
     allowed = "not zero; without the option it is a bearing without ribs"
-    allowed = allowed if both else "above zero: NJ carries one way, here along x"
+    allowed = allowed if both else f"above zero: {asked.geometry.name} carries one way, here along x"
     return f"--axial: got {FORCE.text(axial)}; allowed: {allowed}"
 
 

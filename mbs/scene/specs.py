@@ -351,7 +351,7 @@ class TaperedSpec(LocatingSpec):
     @property
     def elements(self) -> str:
         """Its rolling elements in words."""
-        return f"{self.geometry.rollers} rollers"
+        return f"{self.geometry.rolling_elements} rollers"
 
     def sliced(self, change: Callable[[int], int]) -> Self:
         """See `LocatingSpec.sliced`."""

@@ -77,7 +77,7 @@ roller_length = "14 mm", rollers = 7, diametral_clearance = "5 um" }
 rollers = "bodies"
 slices = 3
 """
-NUP, NJ = (NU.replace("NU308", name) for name in ("NUP308", "NJ308"))
+NUP, NJ, NNCF = (NU.replace("NU308", name) for name in ("NUP308", "NJ308", "NNCF5010"))
 BALL, ANGULAR, TAPERED = (f'bearing = "{name}"' for name in ("6208", "7208B", "32208"))
 ROWS, FOUR_POINT, SPHERE, THRUST = (f'bearing = "{name}"' for name in ("3208", "QJ208", "1208", "51208"))
 TABLE = """
@@ -151,7 +151,7 @@ KINDS = (
     Machine("angular contact", preloaded(ANGULAR), heavy=(1.0, -0.3, 0.0)),
     Machine("tapered", preloaded(TAPERED), heavy=(0.25, -1.0, 0.0)),
     Machine("ribbed NUP", alike(NUP)),
-    Machine("ribbed NJ", (("left", NJ), ("right", f"{NJ}\n{TURNED}"))),
+    Machine("ribbed NJ, NNCF", (("left", NJ), ("right", f"{NNCF}\n{TURNED}"))),
     Machine("table", alike(TABLE), films=False),
 )
 """Machines of one kind each."""

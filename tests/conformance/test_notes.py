@@ -42,7 +42,7 @@ IDLE = {
     "angular contact": 'bearing = "7208B"\naxial_offset = "-250 um"',
     "tapered": 'bearing = "32208"\naxial_offset = "-100 um"',
     "ribbed NUP": NUP.replace("10 um", "200 um") + '\naxial_clearance = "400 um"',
-    "ribbed NJ": NJ.replace("10 um", "200 um") + '\naxial_offset = "-100 um"',
+    "ribbed NJ, NNCF": NJ.replace("10 um", "200 um") + '\naxial_offset = "-100 um"',
 }
 """A bearing of each kind that nothing loads, between two that hold the rotor."""
 

@@ -38,7 +38,7 @@ def bearing(name, profile):
 def left(force, loads):
     """Largest force left on a roller beside the largest that acts on it [N], by the sum over its contacts."""
     worst = 0.0
-    for row in force.last_rollers:
+    for index, row in enumerate(force.last_rollers):
         v, d, f = row[9:12], row[12:15], np.array([0.0, *loads])
         arm, size = abs(force.shape.levers[-1]), np.abs(f).sum()
         for sign, moved, normal, c in (
@@ -49,7 +49,7 @@ def left(force, loads):
             q = c / depth.size * np.maximum(depth, 0.0) ** (10.0 / 9.0)
             f += sign * np.array([q.sum() * normal[0], q.sum() * normal[1], q @ force.shape.levers])
             size += q.sum()
-        for rib in force.ribs:
+        for rib in force.ribs if index < force.geometry.rollers else ():  # the first row leans on them
             moved = v if rib.outer else d - v
             q = rib.contact.coefficient * max(np.dot((*rib.normal, rib.lever), moved) - rib.play, 0.0) ** 1.5
             f += (-1 if rib.outer else 1) * q * np.array([*rib.normal, rib.lever])
@@ -59,7 +59,7 @@ def left(force, loads):
 
 
 @pytest.mark.parametrize("profile", ["iso", "straight"])
-@pytest.mark.parametrize("name", ["32208", "30204", "NUP210", "NJ213"])
+@pytest.mark.parametrize("name", ["32208", "30204", "NUP210", "NNCF5010"])
 @settings(max_examples=25, deadline=None)
 @given(poses=st.lists(st.tuples(sizes, parts, speeds, st.floats(-7.0, 7.0)), min_size=1, max_size=4))
 def test_the_balance_is_found(name, profile, poses):

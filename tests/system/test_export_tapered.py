@@ -64,7 +64,7 @@ def turned(geometry):
 def exported(tmp_path_factory):
     """Bearing, laws over the speed and compiled kernel: tapered, with films, between ribs both ways and one way."""
     folder, found = tmp_path_factory.mktemp("tapered"), {}
-    for name, filmed in (("32208", False), ("30205", True), ("NUP210", False), ("NJ308", False)):
+    for name, filmed in (("32208", False), ("30205", True), ("NUP210", False), ("NNCF5010", False)):
         geometry = geometry_of(name)
         # a constant damper jumps where a line begins to carry: rollers between ribs are at that edge by themselves
         force = TaperedForce(geometry, 0.0 if filmed or name.startswith("N") else 50.0, 0.0 if filmed else DAMPER)
@@ -79,7 +79,7 @@ def exported(tmp_path_factory):
 
 
 @pytest.mark.parametrize("mirrored", [False, True])
-@pytest.mark.parametrize("name", ["32208", "30205", "NUP210", "NJ308"])
+@pytest.mark.parametrize("name", ["32208", "30205", "NUP210", "NNCF5010"])
 def test_kernel_is_that_of_python(exported, name, mirrored):
     """At random poses and velocities, pressed and with some or all rollers lifted off, at rest and fast."""
     force, laws, kernel = exported[name]

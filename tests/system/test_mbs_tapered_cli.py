@@ -127,7 +127,7 @@ def test_refusals(capsys, here, command, words) -> None:
             "--axial: got cylindrical rollers without --axial, or without ribs for it; allowed for",
         ),
         (("NA4908", "--axial", "1 kN"), "needles none"),
-        (("NJ308", "--axial=-1 kN"), "--axial: got -1000 N; allowed: above zero: NJ carries one way"),
+        (("NJ308", "--axial=-1 kN"), "--axial: got -1000 N; allowed: above zero: NJ308 carries one way"),
         (("NUP210", "--axial", "0 N"), "--axial: got 0 N; allowed: not zero"),
         (("NUP210", "--axial", "1 kN", "--profile", "isso"), "--profile: got 'isso' (did you mean 'iso'?)"),
         (("NUP210", "--axial", "1 kN", "--coupled"), "--coupled: not for ribbed roller bearings"),

@@ -15,10 +15,12 @@ from ehdmaps.physics.catalogue import _doubles, designated, estimate
 from ehdmaps.physics.designations.reader import table
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.rollers.ratings import cylindrical_ratings
+from ehdmaps.physics.rollers.ribbed_geometry import mirrored_ribs, ribbed_estimate
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.roller_contacts import RollerContacts
+from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.cli import main
 
 NN = designated("NN3014").with_clearance(5e-6)
@@ -68,6 +70,38 @@ def test_two_rows_are_two_bearings_at_their_places(law, coupled):
     if steps:
         _, state = two.advance(None, POSE, 1e-5, **AT)
         both_alike([two.advance(state, 1.1 * POSE, 1e-5, **AT)[0].force], [stepped])
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_two_rows_of_which_one_leans_on_ribs(way):
+    """NNCF under axial load: an NCF at the rib of its outer ring and one without ribs (they stand 1 mm off), to the
+    balance of rollers, 1e-10 of their forces; the same turned round, at speed."""
+    geometry = ribbed_estimate("NNCF5010", 5e-6)
+    geometry = geometry if way > 0.0 else mirrored_ribs(geometry)
+    assert np.sign(geometry.row_places[0]) == way and geometry.rolling_elements == 2 * geometry.rollers
+    ribs = dataclasses.replace(geometry, row_distance=None)
+    forces = [TaperedForce(one, 1e2, 1e-5) for one in (ribs, dataclasses.replace(ribs, axial_clearance=4e-3))]
+    two = TaperedForce(geometry, 1e2, 1e-5)
+    pose = np.array([way * 2e-5, *POSE[1:]])
+    wanted = [np.zeros(6), np.zeros((6, 6)), np.zeros((6, 6))]
+    for place, one in zip(geometry.row_places, forces, strict=True):
+        moves = carried(place)
+        force, *matrices = one(moves @ pose, VELOCITY * 0.0, cage_angle=0.1, inner_speed=300.0)
+        wanted[0] += moves.T @ force
+        for n, more in enumerate(matrices, 1):
+            wanted[n] += moves.T @ more @ moves
+    found = two(pose, VELOCITY * 0.0, cage_angle=0.1, inner_speed=300.0)
+    assert way * found[0][0] < -100.0
+    for ours, theirs in zip(found, wanted, strict=True):
+        assert np.max(np.abs(ours - theirs)) <= 1e-9 * np.max(np.abs(theirs))
+    loads = two.loads(pose, cage_angle=0.1, inner_speed=300.0)
+    assert loads.ribs[:, : geometry.rollers].max() > 10.0 and np.all(loads.ribs[:, geometry.rollers :] == 0.0)
+    step, axes = 1e-9, np.eye(6)[[0, 1, 2, 4, 5]]
+    for axis in axes:  # K against difference quotients, whose error is 1e-5 of the largest
+        scale = 1.0 if axis[:3].any() else 30.0
+        ahead, behind = (two(pose + s * step * scale * axis, cage_angle=0.1, inner_speed=300.0)[0] for s in (1.0, -1.0))
+        quotient, column = (behind - ahead) / (2.0 * step * scale), found[1] @ axis
+        assert np.max(np.abs(quotient - column)) <= 3e-5 * np.max(np.abs(found[1] @ axis))
 
 
 def test_rollers_as_bodies_stand_in_both_rows():
@@ -120,8 +154,12 @@ def test_the_page_has_its_rows(capsys):
     assert main(["bearing", "NN3014", "--load", "5 kN", "--speed", "1000 rpm", "--law", "hertz"]) == 0
     out = capsys.readouterr().out
     assert "50 rollers in 2 rows, 12.77 mm apart" in out and "of 50 rollers carry" in out
-    assert main(["bearing", "NNCF5010", "--load", "5 kN", "--axial", "1 kN", "--speed", "1000 rpm"]) == 2
-    assert "those of NNCF: not yet" in capsys.readouterr().err
+    assert main(["bearing", "NN3014", "--load", "5 kN", "--axial", "1 kN", "--speed", "1000 rpm"]) == 2
+    assert "N, NU, NN and NNU have ribs on one ring only" in capsys.readouterr().err
+    ask = ["bearing", "NNCF5010", "--load", "5 kN", "--axial", "1 kN", "--speed", "1000 rpm", "--law", "hertz"]
+    assert main(ask) == 0
+    out = capsys.readouterr().out
+    assert "44 rollers of 9 x" in out and "2 rows at 8.852 and -8.852 mm, ribs in the first" in out
 
 
 def test_its_keys_come_back():

@@ -132,7 +132,7 @@ def nearest(designation: str, known: Iterable[str]) -> str:
 
 
 def _type(name: str) -> str:
-    """Letters with which a designation begins; of one without letters its first figure."""
+    """Letters at the beginning of a designation; of one without letters its first figure."""
     return re.match("[A-Z]+|.?", name).group()  # type: ignore[union-attr]
 
 

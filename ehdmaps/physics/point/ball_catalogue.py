@@ -18,7 +18,9 @@ ISO 15 and ISO 12044: boundary dimensions. ISO 76: static ratings, factors f0 (t
 and f0 of the series 60, 62, 63, ratings of 70 C, 72 C, 72 B, 73 B, and the constant K of axial clearance, from which
 the sum of the groove radii comes: NSK, Rolling Bearings, catalogue E1102e; there, too, 618, 619 and 160. Ratings of
 719, and of 70, 72 C above 100 mm: NSK, Super Precision Bearings; of 718: NTN, Ball and Roller Bearings, 2202-E. Series
-64: SKF, Rolling bearings (general catalogue).
+64: SKF, Rolling bearings (general catalogue). 72 C of 160 to 200 mm, 70, 72 of 220 and 240 mm: Koyo, Ball and Roller
+Bearings, B2001RUS, half of its sets of two; 7244B: SKF. It has no C of 220 and 240 mm: the rating at 30 or 40 degrees
+times that of 7040C over 7040, of 7240C over 7240B.
 """
 
 from __future__ import annotations
@@ -131,8 +133,8 @@ def ball_estimate(designation: str, basic_static_rating: float | None = None) ->
             "ball bearing",
             ball_designations(),
             "618, 619, 160, 60, 62 with bores of 10 to 300 mm, 63 to 280 mm, 64 with 20 to 90 mm, such as '6208'; 718 "
-            "with 25 to 170 mm, 719 to 280 mm, 70, 72, 73 to 200 mm with the suffix C, AC or B for the contact angle, "
-            "such as '7208B'",
+            "with 25 to 170 mm, 719 to 280 mm, 70, 72 to 240 mm, 73 to 200 mm with the suffix C, AC or B for the "
+            "contact angle, such as '7208B'",
         )
     name = plain_name(designation, BALLS)
     pitch = 0.5 * (entry.bore + entry.outside_diameter)
@@ -159,6 +161,13 @@ def ball_estimate(designation: str, basic_static_rating: float | None = None) ->
                 balls -= 1
                 diameter = ball_diameter(name, rating / balls, pitch, angle, section)
     whose = "own" if own else {"64": "SKF's", "718": "NTN's"}.get(series, "NSK's")
+    if (
+        not own
+        and suffix
+        and series in ("70", "72")
+        and entry.bore > (0.15 if series == "72" and suffix != "B" else 0.2)
+    ):
+        whose = "Koyo's or SKF's"
     basis = f"inner geometry estimated from catalogue dimensions and {whose} static rating (ISO 76): "
     thin = series in THIN
     errors = THIN_ERRORS if thin else ERRORS.format(2, 8, *(ANGULAR_GROOVES if suffix else GROOVES), 2 if suffix else 1)

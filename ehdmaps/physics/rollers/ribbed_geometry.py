@@ -1,8 +1,9 @@
-"""Cylindrical roller bearings whose ribs carry axial load: NJ and NCF one way, NUP both ways.
+"""Cylindrical roller bearings whose ribs carry axial load: NJ, NCF and NNCF one way, NUP both ways.
 
 A force along the axis goes from a rib of the inner ring through the roller to the rib of the outer ring on the other
 side. Both lean on the ends of the roller, one above its axis and one below: a couple, which tilts the roller and which
-the raceways hold by loads off its middle. N and NU have ribs on one ring only.
+the raceways hold by loads off its middle. N and NU have ribs on one ring only. NNCF have three ribs on the inner ring
+and one at an end of the outer ring: the row there carries axial load, the other one is that of an N.
 
 Ends of rollers are spheres around points of their axes, and ribs are cones that open, as those of tapered rollers.
 Catalogues do not tell them: `OPENING` and `RIB_SHARE` stand for them.
@@ -38,7 +39,7 @@ WAYS = ("both", "+x", "-x")
 LARGEST_SHARE = 0.5
 """Largest axial over radial load of single row cylindrical roller bearings, SKF."""
 
-_TYPES = {"NUP": "both", "NJ": "+x", "NCF": "+x"}
+_TYPES = {"NUP": "both", "NJ": "+x", "NCF": "+x", "NNCF": "+x"}
 _MM = 1e-3
 
 
@@ -54,6 +55,9 @@ class RibbedGeometry(TaperedGeometry):
         Way of the inner ring between its ends, where both carry [m]; half of it beside the middle for one way too.
     diametral_clearance : float
         Clearance between rollers and raceways [m].
+    row_distance : float or None
+        Distance of the middles of two rows of `rollers` each, of which the one at the outer ring's rib carries axial
+        load [m]; None for one row.
     clearance_range : ClearanceRange or None
         What it may be by the designation; no part of what makes bearings equal. None where it is stated.
 
@@ -78,6 +82,7 @@ class RibbedGeometry(TaperedGeometry):
     carries: str = "both"
     axial_clearance: float = 0.0
     diametral_clearance: float = 0.0
+    row_distance: float | None = None
     clearance_range: ClearanceRange | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
@@ -102,6 +107,19 @@ class RibbedGeometry(TaperedGeometry):
     def carries_along(self, way: float) -> bool:
         """Tell whether ribs carry a force on the inner ring along x, `way` > 0, or along -x."""
         return self.carries in ("both", "+x" if way > 0.0 else "-x")
+
+    @property
+    def row_places(self) -> tuple[float, ...]:
+        """See `TaperedGeometry.row_places`: an outer ring with one rib has it at its end, in the way it carries."""
+        if self.row_distance is None:
+            return (0.0,)
+        place = 0.5 * self.row_distance * (-1.0 if self.carries == "-x" else 1.0)
+        return place, -place
+
+    @property
+    def rolling_elements(self) -> int:
+        """Number of its rollers, of all rows."""
+        return self.rollers * len(self.row_places)
 
     @property
     def ways(self) -> str:
@@ -166,6 +184,7 @@ def with_ribs(bearing: BearingGeometry, carries: str = "both", axial_clearance: 
         carries=carries,
         axial_clearance=axial_clearance,
         diametral_clearance=bearing.diametral_clearance,
+        row_distance=bearing.row_distance,
         clearance_range=bearing.clearance_range,
         spelled=bearing.spelled,
     )
@@ -191,12 +210,12 @@ def ribbed_way(designation: str) -> str:
 def ribbed_estimate(
     designation: str, diametral_clearance: float | None = None, axial_clearance: float = 0.0
 ) -> RibbedGeometry:
-    """A bearing NJ, NUP or NCF by its designation.
+    """A bearing NJ, NUP, NCF or NNCF by its designation.
 
     Parameters
     ----------
     designation : str
-        What `ehdmaps.physics.catalogue.designated` takes, of type NJ, NUP or NCF.
+        What `ehdmaps.physics.catalogue.designated` takes, of type NJ, NUP, NCF or NNCF.
     diametral_clearance : float, optional
         [m]; that of the designation if left out.
     axial_clearance : float
@@ -222,8 +241,8 @@ def ribbed_estimate(
 
 
 NO_RIBS = (
-    "allowed for axial loads: balls, tapered rollers, NJ, NUP and NCF; N, NU, NN and NNU have ribs on one ring only, "
-    "needles none; those of NNCF: not yet"
+    "allowed for axial loads: balls, tapered rollers, NJ, NUP, NCF and NNCF; N, NU, NN and NNU have ribs on one ring "
+    "only, needles none"
 )
 """Why a bearing carries no axial load."""
 

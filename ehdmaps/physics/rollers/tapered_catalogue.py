@@ -157,5 +157,9 @@ def tapered_ratings(geometry: TaperedGeometry) -> tuple[float, float]:
     geometry : TaperedGeometry
         The bearing.
     """
-    rollers = Rollers(geometry.roller_diameter, geometry.roller_length, geometry.rollers)
-    return ratings(rollers, geometry.pitch_diameter, geometry.cup_angle)
+    rollers, rows = (
+        Rollers(geometry.roller_diameter, geometry.roller_length, geometry.rollers),
+        len(geometry.row_places),
+    )
+    dynamic, static = ratings(rollers, geometry.pitch_diameter, geometry.cup_angle)
+    return rows ** (7.0 / 9.0) * dynamic, rows * static

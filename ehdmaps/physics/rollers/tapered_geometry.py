@@ -131,6 +131,11 @@ class TaperedGeometry(Named):
         return self.contact_angle * way > 0.0
 
     @property
+    def row_places(self) -> tuple[float, ...]:
+        """Places of its rows along the axis, the one with ribs first [m]."""
+        return (0.0,)
+
+    @property
     def raceway_play(self) -> float:
         """Distance of a roller in the middle of its play from either raceway, where nothing has moved [m]."""
         return 0.0

@@ -52,6 +52,8 @@ class TaperedShape(NamedTuple):
 
     Attributes
     ----------
+    rows : tuple of float
+        Places of the rows along the axis [m]; the rollers of the first one stand first, and lean on the ribs.
     pitch_radius : float
         Distance of the middles of rollers from the axis [m].
     cup, cone : (float, float)
@@ -66,6 +68,7 @@ class TaperedShape(NamedTuple):
         Largest accepted displacement [m] and tilt [rad] of the ring.
     """
 
+    rows: tuple[float, ...]
     pitch_radius: float
     cup: tuple[float, float]
     cone: tuple[float, float]
@@ -85,6 +88,8 @@ class TaperedData(Record):
         ("rollers", c_int64),
         ("slices", c_int64),
         ("ribs", c_int64),
+        ("held", c_int64),
+        ("row", c_double * 2),
         ("pitch_radius", c_double),
         ("cup", c_double * 2),
         ("cone", c_double * 2),
@@ -184,6 +189,8 @@ def data_of(shape: TaperedShape, line: NormalLaw) -> TaperedData:
         rollers=shape.cos.size,
         slices=shape.levers.size,
         ribs=shape.ribs.levers.size,
+        held=shape.cos.size // len(shape.rows),
+        row=np.array([shape.rows[0], shape.rows[-1]]),
         pitch_radius=shape.pitch_radius,
         cup=np.array(shape.cup),
         cone=np.array(shape.cone),

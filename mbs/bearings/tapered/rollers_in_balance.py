@@ -90,6 +90,8 @@ def by_pose(force: TaperedForce, cage_angle: float) -> FloatArray:
     found[:, 2, 4], found[:, 2, 5] = -s, c
     found[:, 0, 0], found[:, 1, 1], found[:, 1, 2] = 1.0, c, s
     found[:, 0] -= force.shape.pitch_radius * found[:, 2]
+    places = np.repeat(force.shape.rows, angle.size // len(force.shape.rows))
+    found[:, 1] += places[:, None] * found[:, 2]
     return found
 
 

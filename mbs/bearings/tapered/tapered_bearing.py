@@ -8,7 +8,8 @@ Quasi-static: each roller is in balance between cup, cone and rib with its centr
 along and across the contacts and tilts in its plane. Both raceways carry after ISO/TS 16281, in slices, half of the
 total approach each, with the profile on each side, or by tables with films; ribs are dry, after Hertz. Cylindrical
 rollers between ribs on both rings (NJ, NUP) are those of a contact angle of zero, in the middle of the play of both
-raceways and of the ribs at the pose zero. Speeds are held in the derivatives. Left out: friction, skewing, the cage,
+raceways and of the ribs at the pose zero. Of two rows (NNCF) one leans on ribs; x is counted from the middle between
+them. Speeds are held in the derivatives. Left out: friction, skewing, the cage,
 how slices of a roller press on each other, bending of the rings.
 
 Contacts at rest store U, the sum of the integrals of their loads over the approaches. With the balance of each roller
@@ -100,7 +101,8 @@ class TaperedLoads(Loads):
         slices = self.slices * geometry.roller_length / self.slices.shape[2]
         gamma = geometry.roller_diameter * math.cos(geometry.cup_angle) / geometry.pitch_diameter
         rating = tapered_ratings(geometry)[0]
-        return roller_reference_life(slices, rating, gamma, geometry.cup_angle, inner_turns=inner_turns)
+        rows = len(geometry.row_places)
+        return roller_reference_life(slices, rating, gamma, geometry.cup_angle, inner_turns=inner_turns, rows=rows)
 
 
 class TaperedForce(LocatingForce):
@@ -179,10 +181,11 @@ class TaperedForce(LocatingForce):
         depths = iso_profile(self.positions, diameter, length) if profile == "iso" else np.zeros(slices)
         if callable(profile):
             depths = np.array(profile(self.positions.copy()), dtype=np.float64)
-        places = directions(geometry.rollers)
+        places = np.tile(directions(geometry.rollers), len(geometry.row_places))
         way = -1.0 if geometry.contact_angle < 0.0 else 1.0
         self.ribs = geometry.ribs(material)
         self.shape = TaperedShape(
+            rows=geometry.row_places,
             pitch_radius=0.5 * geometry.pitch_diameter,
             cup=(way * math.sin(geometry.cup_angle), math.cos(geometry.cup_angle)),
             cone=(way * math.sin(geometry.cone_angle), math.cos(geometry.cone_angle)),
@@ -215,7 +218,7 @@ class TaperedForce(LocatingForce):
         self._kept = [law_data(law) for law in self.films.sides]
         self._lines = (LawData * 2)(*self._kept)
         self._given, self._answer = np.zeros((2, 6)), np.zeros(ANSWER)
-        self._rollers = np.zeros((self.geometry.rollers, COLUMNS))
+        self._rollers = np.zeros((self.angles.size, COLUMNS))
         self._out = self._answer[:6], self._answer[6:42].reshape(6, 6), self._answer[42:].reshape(6, 6)
         self._places = (
             (self._data.address, ctypes.addressof(self._lines), self._given[0].ctypes.data),

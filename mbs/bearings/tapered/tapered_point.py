@@ -62,7 +62,7 @@ class TaperedPoint(LocatingPoint):
     def advice(force: TaperedForce, load: FloatArray, speeds: tuple[float, float]) -> str:
         """Advice on the axial load, see `LocatingPoint.advice`."""
         geometry = force.geometry
-        thrown = geometry.rollers * force.speed_loads(*speeds)[0]
+        thrown = geometry.rolling_elements * force.speed_loads(*speeds)[0]
         least = math.tan(geometry.cup_angle) * (math.hypot(*load[1:]) + thrown)
         if not (geometry.contact_angle and math.copysign(load[0], load[0] * geometry.contact_angle) < least):
             return ""

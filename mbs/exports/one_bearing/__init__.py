@@ -3,7 +3,7 @@
 | module | idea |
 |---|---|
 | `kind` | what differs between kinds of bearings: a row |
-| `balls`, `rollers` | the rows: ball bearings; tapered rollers, NJ, NUP and NCF |
+| `balls`, `rollers` | the rows: ball bearings; tapered rollers, NJ, NUP, NCF, NNCF |
 | `speed_laws` | laws of the contacts over the speed: one table for all speeds |
 | `source` | the bearing in C: templates, in which its mathematics is, and its numbers |
 | `unit` | the bearing as a unit, by the kernel in C |

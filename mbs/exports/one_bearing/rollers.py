@@ -30,7 +30,8 @@ def _public(force: TaperedForce, play: float = 0.0) -> str:
     inner, outer = geometry.cage_speed(1.0, 0.0), geometry.cage_speed(0.0, 1.0)
     return "".join(
         (
-            define("EHD_ROLLERS", geometry.rollers, "number of rollers"),
+            define("EHD_ROLLERS", geometry.rolling_elements, "number of rollers"),
+            define("EHD_ROW_ROLLERS", geometry.rollers, "number of rollers of a row"),
             define("EHD_ROLLER_DIAMETER", geometry.roller_diameter, "in the middle [m]"),
             define("EHD_ROLLER_LENGTH", geometry.roller_length, "[m]"),
             define("EHD_PITCH_DIAMETER", geometry.pitch_diameter, "[m]"),
@@ -67,7 +68,8 @@ def _data(force: TaperedForce) -> str:
     ribs = rib_rows(shape.ribs) if force.ribs else np.zeros((1, RIB_NUMBERS))
     pairs = "}, {".join(", ".join(map(number, pair)) for pair in (shape.cup, shape.cone))
     play = force.geometry.raceway_play
-    sizes = f"EHD_ROLLERS, EHD_SLICES, EHD_RIBS, {number(shape.pitch_radius)}"
+    rows = ", ".join(number(one) for one in (shape.rows[0], shape.rows[-1]))
+    sizes = f"EHD_ROLLERS, EHD_SLICES, EHD_RIBS, EHD_ROW_ROLLERS, {{{rows}}}, {number(shape.pitch_radius)}"
     dampers = line.damping, line.damping_time
     numbers = map(number, (play, shape.most_travel, shape.most_tilt, 2.0 * line.coefficient, *dampers))
     return (

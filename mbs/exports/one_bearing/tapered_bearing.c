@@ -14,8 +14,8 @@ int ehd_bearing_make(ehd_bearing *bearing, double play, int mirrored) {
     bearing->mirrored = mirrored != 0;
     bearing->added = NULL;
     for (int j = 0; j < EHD_ROLLERS; j++) {
-        bearing->cosine[j] = cos(two_pi * j / EHD_ROLLERS);
-        bearing->sine[j] = sin(two_pi * j / EHD_ROLLERS);
+        bearing->cosine[j] = cos(two_pi * (j % EHD_ROW_ROLLERS) / EHD_ROW_ROLLERS);
+        bearing->sine[j] = sin(two_pi * (j % EHD_ROW_ROLLERS) / EHD_ROW_ROLLERS);
     }
     return EHD_OK;
 }

@@ -7,8 +7,8 @@
  * what acts on the inner ring [N], [N m], about its centre. theta_x has no force. The outer ring gets the opposite. In
  * the pose zero tapered rollers just touch; cylindrical ones are in the middle of their play.
  *
- * Roller j stands at cage_angle + 2 pi j/EHD_ROLLERS, from y towards z. Each roller is in balance with both raceways in
- * slices, the ribs, its centrifugal load and its gyroscopic moment. Rollers have no inertia beside that.
+ * Roller j stands at cage_angle + 2 pi j/EHD_ROW_ROLLERS, from y towards z; of two rows the one with ribs is first, and
+ * x is counted from the middle between both. Each roller is in balance with both raceways in slices, the ribs, its centrifugal load and its gyroscopic moment. Rollers have no inertia beside that.
  *
  *     static ehd_law law;         // all zero before the first call
  *     static ehd_rollers rollers; // the same

@@ -47,9 +47,11 @@ def _about(description: Description, point: TaperedPoint) -> list[str]:
     """Lines on the geometry, its slices and the load."""
     force = point.force
     geometry = force.geometry
+    rows = geometry.row_places
+    apart = f"; 2 rows at {1e3 * rows[0]:.4g} and {1e3 * rows[1]:.4g} mm, ribs in the first" if len(rows) > 1 else ""
     return [
-        f"{geometry.rollers} rollers of {1e3 * geometry.roller_diameter:.4g} x {1e3 * geometry.roller_length:.4g} mm "
-        f"on {1e3 * geometry.pitch_diameter:.4g} mm; {_angles(geometry)}",
+        f"{geometry.rolling_elements} rollers of {1e3 * geometry.roller_diameter:.4g} x "
+        f"{1e3 * geometry.roller_length:.4g} mm on {1e3 * geometry.pitch_diameter:.4g} mm; {_angles(geometry)}{apart}",
         f"profile {force.profile}, {force.positions.size} slices, {TEMPERATURE.text(description.temperature)}, "
         f"{tilting(description, 'roller')}",
     ]

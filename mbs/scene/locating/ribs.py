@@ -1,4 +1,4 @@
-"""Bearings NJ and NUP of a scene: where a ring moves along x they are held by their ribs.
+"""Bearings NJ, NUP, NCF and NNCF of a scene: where a ring moves along x they are held by their ribs.
 
 Elsewhere nothing leans on a rib, and they are bearings like NU, with all that those take.
 """

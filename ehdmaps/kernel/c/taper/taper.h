@@ -1,7 +1,8 @@
 /* ---------------------------------------------------------------------------------------------------------------------
  * A bearing of tapered rollers, or of cylindrical ones between ribs: structures
  *
- * Frame O is that of the outer ring, in the plane of the middles of the rollers; x is the axis of the bearing. All of a
+ * Frame O is that of the outer ring, in the plane of the middles of the rollers, or in the middle between two rows; x is
+ * the axis of the bearing. Of two rows one leans on ribs (NNCF). All of a
  * roller happens in the plane of the axis and the roller: V = (axial, radial, rotation from the axis outwards) of its
  * middle, D the same of what the inner ring does there. The inner ring is the cone, the outer one the cup. All in SI
  * units.
@@ -21,6 +22,8 @@ typedef struct ehd_taper_rib {
 /* What does not change of a bearing. */
 typedef struct ehd_taper_data {
     int64_t rollers, slices, ribs;
+    int64_t held;                  /* rollers that lean on ribs: the first ones */
+    double row[2];                 /* places along x of those, and of others [m] */
     double pitch_radius;           /* distance of the middles of rollers from the axis [m] */
     double cup[2], cone[2];        /* normals of the lines: axial, radial */
     double play;                   /* of each raceway, beside the profile [m] */

@@ -1,17 +1,17 @@
 /* ---------------------------------------------------------------------------------------------------------------------
  * The bearing: sums over its rollers
  *
- * A roller at the angle a, c = cos a, s = sin a, R from the axis, has D = (x - R turn, c y + s z, turn),
- * turn = c theta_z - s theta_y.
+ * A roller at the angle a, c = cos a, s = sin a, R from the axis and p along it, has D = (x - R turn, c y + s z + p turn,
+ * turn), turn = c theta_z - s theta_y.
  * ------------------------------------------------------------------------------------------------------------------ */
 
 #define TAPER_LIGHT 1e-6 /* load on a roller that is left out of dry contacts [N]: approaches by it would be rounding */
 
 /* Add the symmetric matrix of a roller to the upper half of that of the ring. */
-static void taper_on_ring(double m[3][3], double c, double s, double radius, double sum[6][6]) {
+static void taper_on_ring(double m[3][3], double c, double s, double radius, double place, double sum[6][6]) {
     const double xx = m[0][0], xr = m[0][1], rr = m[1][1];
-    const double x_turn = m[0][2] - radius * xx, r_turn = m[1][2] - radius * xr;
-    const double turn = m[2][2] - 2.0 * radius * m[0][2] + radius * radius * xx;
+    const double x_turn = m[0][2] - radius * xx + place * xr, r_turn = m[1][2] - radius * xr + place * rr;
+    const double turn = m[2][2] - radius * (m[0][2] + x_turn) + place * (m[1][2] + r_turn);
     sum[0][0] += xx;
     sum[0][1] += c * xr;
     sum[0][2] += s * xr;
@@ -30,8 +30,8 @@ static void taper_on_ring(double m[3][3], double c, double s, double radius, dou
 }
 
 /* Add what rates of deviations of a roller do to those of the bearing, EHD_PAIR_BY_RATES. */
-static void taper_add_rates(const double own[5], double radius, double c, double s, double *out) {
-    const double moment = own[2] - radius * own[0];
+static void taper_add_rates(const double own[5], double radius, double place, double c, double s, double *out) {
+    const double moment = own[2] - radius * own[0] + place * own[1];
     out[0] -= own[0];
     out[1] -= c * own[1];
     out[2] -= s * own[1];
@@ -57,7 +57,8 @@ int ehd_taper_force(const ehd_taper_data *data, const ehd_pair_law law[2], const
     if (!(fabs(pose[0]) <= far && fabs(pose[1]) <= far && fabs(pose[2]) <= far && fabs(pose[4]) <= tilt &&
           fabs(pose[5]) <= tilt))
         return EHD_TAPER_TOO_FAR;
-    taper_given of = {data, law, NULL, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, fabs(data->lever[data->slices - 1]),
+    ehd_taper_data own = *data; /* with the ribs of the row */
+    taper_given of = {&own, law, NULL, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, fabs(data->lever[data->slices - 1]),
                       NULL, NULL};
     double by_rates[5];
     const int dry = law[0].rows == 0 && law[1].rows == 0;
@@ -71,9 +72,11 @@ int ehd_taper_force(const ehd_taper_data *data, const ehd_pair_law law[2], const
         ehd_taper_roller *roller = rollers + j;
         const double c = turn_c * data->cosine[j] - turn_s * data->sine[j];
         const double s = turn_s * data->cosine[j] + turn_c * data->sine[j];
+        const double place = data->row[j >= data->held];
+        own.ribs = j < data->held ? data->ribs : 0;
         of.d[2] = pose[5] * c - pose[4] * s;
         of.d[0] = pose[0] - radius * of.d[2];
-        of.d[1] = pose[1] * c + pose[2] * s;
+        of.d[1] = pose[1] * c + pose[2] * s + place * of.d[2];
         if (memory) of.memory = memory + j * 2 * EHD_TAPER_MEMORY * data->slices;
         if (data->added) {
             of.added = data->added + 4 * j;
@@ -88,17 +91,17 @@ int ehd_taper_force(const ehd_taper_data *data, const ehd_pair_law law[2], const
             memset(rollers, 0, (size_t)data->rollers * sizeof *rollers);
             return EHD_TAPER_NO_BALANCE;
         }
-        if (data->added) taper_add_rates(by_rates, radius, c, s, data->by_rates);
+        if (data->added) taper_add_rates(by_rates, radius, place, c, s, data->by_rates);
         if (roller->carried <= 0.0) continue;
         loaded++;
-        const double moment = roller->force[2] - radius * roller->force[0];
+        const double moment = roller->force[2] - radius * roller->force[0] + place * roller->force[1];
         answer->force[0] -= roller->force[0];
         answer->force[1] -= c * roller->force[1];
         answer->force[2] -= s * roller->force[1];
         answer->force[4] += s * moment;
         answer->force[5] -= c * moment;
-        taper_on_ring(roller->stiffness, c, s, radius, answer->stiffness);
-        taper_on_ring(roller->damping, c, s, radius, answer->damping);
+        taper_on_ring(roller->stiffness, c, s, radius, place, answer->stiffness);
+        taper_on_ring(roller->damping, c, s, radius, place, answer->damping);
     }
     for (int i = 0; i < 6; i++)
         for (int k = 0; k < i; k++) {
