@@ -21,17 +21,43 @@ import numpy as np
 from scipy import sparse
 
 from ehdmaps.arrays import FloatArray, IntArray
-from ehdmaps.errors import Problems
+from ehdmaps.errors import InputError, Problems
+from ehdmaps.extras import lacking
 from mbs.flexible.plan import UNIT_SYSTEMS
 from mbs.model.body import lever_arm
 
-MOST_FREEDOMS = 300_000
-"""Degrees of freedom that are taken: of more SuperLU has no memory."""
+MOST_BY_LU = 300_000
+"""Degrees of freedom up to which SuperLU factorises: of more it has no memory."""
+
+MOST_FREEDOMS = 2_000_000
+"""Degrees of freedom that are taken: of a million the factor of CHOLMOD takes 3 GB where walls are thin, more else."""
 
 COARSER = "take a coarser mesh"
 
 TOO_MANY = f"allowed: at most {MOST_FREEDOMS}; {COARSER}"
 """Words on what is allowed, and what to do."""
+
+
+def check_size(where: str, size: int) -> None:
+    """Refuse more degrees of freedom than can be reduced, before much is read.
+
+    Parameters
+    ----------
+    where : str
+        Where they come from.
+    size : int
+        Their number.
+
+    Raises
+    ------
+    InputError
+        For too many, or if there are more than SuperLU takes, and cvxopt is not installed.
+    """
+    if size > MOST_FREEDOMS:
+        raise InputError(f"{where}: got {size} degrees of freedom; {TOO_MANY}")
+    if size > MOST_BY_LU:
+        Problems(lacking("large", "cvxopt", f"{where}: {size} degrees of freedom, more than {MOST_BY_LU}")).check()
+
 
 _OVERREACH = 1.0 + 1e-6
 """Square of an entry over the product of its diagonals, which is at most 1 but for rounding."""

@@ -27,7 +27,7 @@ from ehdmaps.arrays import IntArray
 from ehdmaps.errors import InputError, Problems
 from ehdmaps.inputs import first_bytes
 from ehdmaps.units import short
-from mbs.flexible.finite_elements import MOST_FREEDOMS, TOO_MANY, FiniteElementModel, NodePositions, named
+from mbs.flexible.finite_elements import FiniteElementModel, NodePositions, check_size, named
 from mbs.flexible.number_table import NumberTable, check_file, check_last_line, read_numbers
 from mbs.flexible.plan import UNIT_SYSTEMS
 from mbs.flexible.rigid_motion import check_rigid_motion
@@ -216,7 +216,7 @@ def read_abaqus_matrix(path: Path, dofs: Path | None = None) -> Labelled:
     keys = 6 * whole[:, [0, 2]] + whole[:, [1, 3]] - 1
     labels, places = np.unique(keys, return_inverse=True)
     places = places.reshape(keys.shape)
-    _check_count(path, labels.size)
+    check_size(str(path), labels.size)
     matrix = _symmetric(table, places[:, 0], places[:, 1], labels.size)
     return Labelled(matrix, labels // 6, labels % 6)
 
@@ -276,7 +276,7 @@ def read_dof_table(path: Path) -> tuple[IntArray, IntArray]:
 
 def checked_labels(table: NumberTable, whole: IntArray) -> tuple[IntArray, IntArray]:
     """Nodes and directions (from 0) of rows (node, direction from 1), shape (N, 2); InputError with file and line."""
-    _check_count(table.path, whole.shape[0])
+    check_size(str(table.path), whole.shape[0])
     bad = np.flatnonzero((whole[:, 0] < 1) | (whole[:, 1] < 1) | (whole[:, 1] > 6))
     if bad.size:
         raise table.problem(int(bad[0]), "allowed: a node from 1 and a direction from 1 to 6")
@@ -285,12 +285,6 @@ def checked_labels(table: NumberTable, whole: IntArray) -> tuple[IntArray, IntAr
         again = int(np.setdiff1d(np.arange(whole.shape[0]), first)[0])
         raise table.problem(again, "which is there twice; allowed: each degree of freedom once")
     return whole[:, 0].copy(), whole[:, 1] - 1
-
-
-def _check_count(path: Path, count: int) -> None:
-    """Raise if there are more degrees of freedom than can be reduced."""
-    if count > MOST_FREEDOMS:
-        raise InputError(f"{path}: got {count} degrees of freedom; {TOO_MANY}")
 
 
 def _symmetric(table: NumberTable, rows: IntArray, columns: IntArray, size: int, begin: int = 0) -> sparse.csc_array:

@@ -32,7 +32,7 @@ from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError, Problems
 from ehdmaps.units import short
 from mbs.flexible.apart import run_apart
-from mbs.flexible.finite_elements import ASYMMETRY, MOST_FREEDOMS, TOO_MANY, FiniteElementModel, NodePositions, named
+from mbs.flexible.finite_elements import ASYMMETRY, FiniteElementModel, NodePositions, check_size, named
 from mbs.flexible.matrix_files import Labelled, assemble_model
 from mbs.flexible.number_table import check_file, check_last_line
 
@@ -308,8 +308,7 @@ def _labelled(where: str, parts: Mapping[str, Any], which: str, nodes: NodePosit
     keys = np.stack([_keys(where, parts[f"{which}_{part}"], nodes, mesh) for part in ("rows", "columns")])
     labels, places = np.unique(keys, return_inverse=True)
     rows, columns = places.reshape(keys.shape)
-    if labels.size > MOST_FREEDOMS:
-        raise InputError(f"{where}: got {labels.size} degrees of freedom; {TOO_MANY}")
+    check_size(str(where), labels.size)
     # In one half a pair is the same either way round.
     low, high = (np.minimum(rows, columns), np.maximum(rows, columns)) if form == _SYMMETRIC else (rows, columns)
     _, first, counts = np.unique(low * labels.size + high, return_index=True, return_counts=True)

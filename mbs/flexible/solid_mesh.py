@@ -30,7 +30,7 @@ from ehdmaps.inputs import read_text
 from ehdmaps.physics.solids import Material
 from ehdmaps.solids.calculix import LONGEST_RUN, run_deck
 from mbs.flexible.apart import run_apart
-from mbs.flexible.finite_elements import MOST_FREEDOMS, TOO_MANY
+from mbs.flexible.finite_elements import check_size
 from mbs.flexible.number_table import LONGEST_FILE, check_file
 
 MESHES = (".msh", ".inp", ".bdf", ".nas", ".fem", ".med")
@@ -177,8 +177,7 @@ def read_solid(path: Path, unit: float) -> SolidMesh:
     if points.ndim != 2 or points.shape[1] != 3 or not np.all(np.isfinite(points)):
         raise InputError(f"{path}: got points of shape {points.shape}; allowed: three finite coordinates a node")
     used = np.unique(np.concatenate([block.ravel() for block in cells.values()]))
-    if 3 * used.size > MOST_FREEDOMS:
-        raise InputError(f"{path}: got {3 * used.size} degrees of freedom; {TOO_MANY}")
+    check_size(str(path), 3 * used.size)
     place = np.full(len(points), -1)
     place[used] = np.arange(used.size)
     groups: dict[str, IntArray] = {}

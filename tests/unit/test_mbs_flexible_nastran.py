@@ -9,7 +9,7 @@ import pytest
 from scipy import linalg
 
 from ehdmaps.errors import DependencyError, InputError
-from mbs.flexible import nastran_files
+from mbs.flexible import finite_elements, nastran_files
 from mbs.flexible.carry_out import read_model, reduce_model
 from mbs.flexible.finite_elements import extent
 from mbs.flexible.nastran_files import read_nastran
@@ -224,7 +224,7 @@ def test_too_many_freedoms(tmp_path, monkeypatch):
     path.write_text("$\n")
     monkeypatch.setattr(nastran_files, "_entries", lambda *given: parts())
     assert read_nastran(path, path, path).stiffness.toarray().tolist() == [[2.0, -1.0], [-1.0, 2.0]]
-    monkeypatch.setattr(nastran_files, "MOST_FREEDOMS", 1)
+    monkeypatch.setattr(finite_elements, "MOST_FREEDOMS", 1)
     with pytest.raises(InputError, match="KAAX: got 2 degrees of freedom; allowed: at most"):
         read_nastran(path, path, path)
 

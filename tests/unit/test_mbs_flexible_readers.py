@@ -158,7 +158,7 @@ class TestReaders:
         assert [entry.tolist() for entry in read_dofs(path)] == [[120, 7], [0, 2]]
         path.write_text("7 4\n")
         assert [entry.tolist() for entry in read_dof_table(path)] == [[7], [3]]
-        monkeypatch.setattr("mbs.flexible.matrix_files.MOST_FREEDOMS", 0)
+        monkeypatch.setattr("mbs.flexible.finite_elements.MOST_FREEDOMS", 0)
         with pytest.raises(InputError, match="got 1 degrees of freedom; allowed: at most"):
             read_dof_table(path)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 
 import meshio
 import numpy as np
@@ -12,6 +13,8 @@ import mbs.cli
 from ehdmaps.errors import InputError
 from ehdmaps.physics.solids import MATERIALS, Material
 from ehdmaps.solids.calculix import run_deck
+from mbs.commands.scenes import reduce_mesh
+from mbs.flexible import finite_elements
 from mbs.flexible.matrix_files import read_dofs, read_triplets
 from mbs.flexible.reduced_file import read_reduced
 from mbs.flexible.solid_mesh import assembled, materials_of, read_solid, solid_lines
@@ -160,6 +163,22 @@ def test_without_calculix_it_is_said_before_a_mesh_is_read(deck, monkeypatch, ca
     monkeypatch.setenv("PATH", "/nowhere")
     status, _, err = run(capsys, str(deck), "--seat", "a=LEFT")
     assert status == 2 and "apt-get install calculix-ccx" in err
+
+
+def test_large_bodies_need_an_extra_which_is_said_before_calculix_runs(deck, tmp_path, monkeypatch, capsys) -> None:
+    needed("ccx")
+    monkeypatch.setattr(finite_elements, "MOST_BY_LU", 1000)
+    monkeypatch.setitem(sys.modules, "cvxopt", None)
+    status, _, err = run(capsys, str(deck), "--seat", "a=LEFT", "-o", str(tmp_path / "a.nc"))
+    assert status == 2 and "1047 degrees of freedom, more than 1000: the package cvxopt cannot be loaded" in err
+    assert 'pip install "ehdmaps[large]"' in err and "assembled" not in err
+
+
+def test_what_memory_does_not_hold_is_refused_before_calculix_runs(deck, tmp_path, monkeypatch, capsys) -> None:
+    needed("ccx")
+    monkeypatch.setattr(reduce_mesh, "_available", lambda: 0.3)
+    status, _, err = run(capsys, str(deck), "--seat", "a=LEFT", "-o", str(tmp_path / "a.nc"))
+    assert status == 2 and "allowed: the 0.3 GB that are free; take a coarser mesh" in err
 
 
 def test_shells_alone_are_no_body(tmp_path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import re
 import tempfile
 import time
@@ -20,7 +21,7 @@ from ehdmaps.program import tell
 from ehdmaps.solids.calculix import program
 from ehdmaps.units import quantity
 from mbs.flexible.carry_out import read_model, reduce_model
-from mbs.flexible.finite_elements import FiniteElementModel, extent
+from mbs.flexible.finite_elements import COARSER, FiniteElementModel, extent
 from mbs.flexible.plan import (
     CylinderSurface,
     Kind,
@@ -114,7 +115,10 @@ def reduced_mesh(arguments: argparse.Namespace) -> tuple[ReductionPlan, FiniteEl
             name, place = _point(mesh, text)
             points[name] = place
     problems.check()
-    tell(f"{path}: {_effort(mesh)}")
+    words_of_effort, memory = _effort(mesh)
+    if memory > (there := _available()):
+        raise InputError(f"{path}: {words_of_effort}; allowed: the {there:.2g} GB that are free; {COARSER}")
+    tell(f"{path}: {words_of_effort}")
     with tempfile.TemporaryDirectory(prefix="mbs-reduce-") as folder:
         stiffness, mass, dofs, deck = assembled(mesh, materials, Path(folder))
         tell(f"{path}: assembled by CalculiX")
@@ -138,11 +142,21 @@ _FIXED, _EACH, _TIME, _SIZE, _POWER = 0.5, 11e-6, 27.0, 39e3, 1.25
 the former, and a power between those of reading (1) and of factors (4/3)."""
 
 
-def _effort(mesh: SolidMesh) -> str:
-    """Size of a mesh, and about how long it takes and how much memory."""
+def _available() -> float:
+    """Memory that programs may take before the system swaps [GB]; infinite where it is not told."""
+    try:
+        found = re.search(r"MemAvailable:\s*(\d+) kB", Path("/proc/meminfo").read_text("ascii"))
+    except OSError:
+        found = None
+    return 1024e-9 * int(found[1]) if found else math.inf
+
+
+def _effort(mesh: SolidMesh) -> tuple[str, float]:
+    """Size of a mesh, and about how long it takes and how much memory; the latter [GB]."""
     size = 3 * len(mesh.positions)
     lasting, memory = duration(_TIME * (size / _SIZE) ** _POWER), _FIXED + _EACH * size
-    return f"{mesh.count} elements, {size} degrees of freedom; about {lasting} and {memory:.2g} GB beside CalculiX"
+    words = f"{mesh.count} elements, {size} degrees of freedom; about {lasting} and {memory:.2g} GB beside CalculiX"
+    return words, memory
 
 
 def _count(planned: PlannedInterface, model: FiniteElementModel) -> int:
