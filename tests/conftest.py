@@ -86,7 +86,16 @@ class Doctests:
             outcome.force_result([one for one in outcome.get_result() if type(one) is pytest.Module])
 
 
+def alone() -> None:
+    """Have commands work in one process where nobody says how many: others are forks of one that holds all tests, and
+    what they load and make is lost with them, half of the processor time of many commands."""
+    from ehdmaps import workers
+
+    workers.available_cores = lambda: 1
+
+
 def pytest_configure(config: pytest.Config) -> None:
+    alone()
     config.pluginmanager.register(Doctests())
     config.pluginmanager.register(Durations())
     share(config)

@@ -7,5 +7,5 @@ map_readers      jobs, maps, stores and statuses of runs, damaged
 machine_readers  scenes, bodies of finite elements and measured records, damaged
 ===============  ====================================================================
 
-The tests give each reader a hundred files; `python -m tests.fuzzing` as many as are asked for.
+The tests give each reader forty files; `python -m tests.fuzzing` as many as are asked for.
 """

@@ -8,7 +8,7 @@ from mbs.laboratory.extremes.check import checks_text
 from tests.fuzzing.__main__ import READERS
 from tests.fuzzing.search import fuzz
 
-MUTATIONS = 100
+MUTATIONS = 40
 """Damaged files for each reader; `python -m tests.fuzzing` has 10000."""
 
 

@@ -122,13 +122,13 @@ def test_the_unchanged_job_is_good():
 
 
 @pytest.mark.slow
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(mutations)
 def test_a_mutated_job_is_read_or_refused(changes):
     job_or_problems(written(mutated(changes)))
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(
     st.one_of(
         st.text(), quantities, st.from_regex(r"[0-9.]{1,5} [a-zA-Z]{1,6}([*/ ^][a-zA-Z0-9]{1,3}){0,3}", fullmatch=True)

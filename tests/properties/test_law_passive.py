@@ -26,7 +26,7 @@ def law(surface=SMOOTH, layer=math.inf):
     return ContactLaw("series", CONTACTS, OIL, SMALL_FIELD, "clamp", supply=OilSupply(layer), surface=surface)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(
     surface=surfaces,
     layer=layers,
@@ -53,7 +53,7 @@ def test_closed_cycles_create_no_energy(surface, layer, speed, temperature, q, m
     assert work >= -1e-4 * np.sum(np.abs(power)) * phase[1] - 1e-30
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(
     surface=surfaces,
     layer=layers,

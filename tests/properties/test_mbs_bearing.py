@@ -56,7 +56,7 @@ def test_closed_cycles_create_no_energy(law, clearance, speed, temperature, angl
 
 
 @pytest.mark.parametrize("law", ["damped hertz", "hertz with a damping time", "constant"])
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(
     clearance=clearances,
     angle=angles,
@@ -72,7 +72,7 @@ def test_damping_of_dry_laws_takes_power(law, clearance, angle, pose, velocity):
 
 
 @pytest.mark.parametrize("law", ["hertz", "damped hertz", "hertz with a damping time", "constant", "map"])
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(
     clearance=clearances,
     speed=speeds,
@@ -97,7 +97,7 @@ def test_matrices_and_loads_have_the_right_signs(law, clearance, speed, temperat
     assert np.all(at.rollers(p, v, angle).load_per_length >= 0.0)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(clearance=clearances, speed=speeds, angle=angles, pose=st.tuples(places, places, tilts, tilts))
 def test_cage_turned_by_a_pitch_changes_nothing(clearance, speed, angle, pose):
     p = np.zeros(6)

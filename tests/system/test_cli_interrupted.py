@@ -214,16 +214,6 @@ def test_a_second_job_on_the_same_store_is_refused(folder, capsys):
     assert (first.returncode, counts(out)) == (0, (0, POINTS))
 
 
-def test_a_killed_worker_is_not_the_end(folder):
-    run = subprocess.Popen(
-        command("--workers", "2"), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
-    )
-    wait_for(lambda: len(begun(folder)) >= 10)
-    os.kill(int(begun(folder)[0][0]), signal.SIGKILL)
-    out, _ = run.communicate(timeout=60)
-    assert (run.returncode, counts(out)) == (0, (0, POINTS))
-
-
 def test_a_running_job_can_be_looked_at_until_it_is_killed_and_after(folder, capsys):
     def run(*arguments):
         code = cli.main(arguments)

@@ -142,7 +142,7 @@ def test_a_build_without_a_compiler_takes_one_from_pypi(distributions, tmp_path)
     unpack(source, tmp_path)
     unpacked = tmp_path / source.name.removesuffix(".tar.gz")
     options = unpacked / "ehdmaps/kernel/building.py"
-    options.write_text(options.read_text("utf-8").replace('"": ("-O3",)', '"": ("-O1",)'), "utf-8")  # it is quicker
+    options.write_text(options.read_text("utf-8").replace('"": ("-O3",)', '"": ("-O0",)'), "utf-8")  # it is quicker
     (tmp_path / "lent").mkdir()
     python = source.parent / "tools/bin/python"
     code = BUILD.replace("print(", "sys.path.remove(sys.argv[3])\nasked = backend.compiler()\nprint(asked, ")
@@ -203,8 +203,7 @@ def test_an_installation_elsewhere_has_its_jobs_scenes_exports_and_solids(instal
     # in Python, as numba would compile all anew for the new place; with the finite elements of the housing
     in_python = {"NUMBA_DISABLE_JIT": "1"}
     done([installed / "bin/mbs", "statics", "gearbox", "--law", "hertz"], tmp_path, **in_python)
-    for target, name in (("csv", "k.csv"), ("c", "c")):
-        done([program, "export", small_map, "--to", target, "-o", name], tmp_path, **in_python)
+    done([program, "export", small_map, "--to", "c", "-o", "c"], tmp_path, **in_python)
     assert "NU308" in done([program, "solids", "nu308"], tmp_path)
 
 

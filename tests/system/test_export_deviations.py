@@ -21,15 +21,12 @@ DAMPED = "hertz:1.25e-5 s"
 KINDS = {
     "NU308": (),
     "6208": (),
-    "7208B": ("--axial", "2 kN"),
     "QJ208": ("--axial", "2 kN"),
-    "3208": (),
     "1208": (),
-    "51208": ("--axial", "20 kN"),
     "32208": ("--axial", "2 kN"),
     "NUP308": ("--axial", "500 N"),
 }
-"""Designations, one of each kind, with the options without which they carry nothing."""
+"""Designations, one of each element in C, with the options without which they carry nothing."""
 
 SCENE = """
 schema = 1

@@ -79,7 +79,7 @@ def test_processes_of_executorlib_make_the_same_map(job, tmp_path, capsys):
 
 @pytest.mark.slow  # the same
 def test_processes_of_executorlib_find_the_same_unknowns():
-    scene, lines = read_scene("electric_drive"), np.arange(40.0, 1800.0, 32.0)
+    scene, lines = read_scene("electric_drive"), np.arange(40.0, 1800.0, 64.0)
     measured = balls(angles=1).responses([6000.0], lines, np.random.default_rng(5))
     with named_executor("executorlib:local", 2) as engine:
         assert engine is not None

@@ -3,7 +3,6 @@
 What ehdmaps needs is linked from the environment of the tests, so that pip finds it and downloads setuptools alone.
 """
 
-import json
 import os
 import shutil
 import site
@@ -21,8 +20,6 @@ ROOT = Path(__file__).parents[2]
 
 pytestmark = pytest.mark.slow
 
-POINT = ["--load", "62 N", "--length", "0.7 mm", "--speed", "1.7 m/s", "--temperature", "40 degC", "--json"]
-
 JOB = """
 schema = 1
 [bearing]
@@ -36,16 +33,6 @@ temperature = ["40 degC", "60 degC"]
 [solver]
 name = "formula"
 """
-
-COMPILED = """
-import numpy as np
-from ehdmaps.ehl import reynolds
-from ehdmaps.physics.isotherm import LINEAR, Isotherm
-
-problem = reynolds.LineProblem(1.0, Isotherm(LINEAR, 2.0, 0.0, 0.0, 0.0))
-print(reynolds.steepest_viscosity_step(problem, np.ones(4), np.ones(4)))
-"""
-"""A compiled function of an unchanged file that calls one of a file that changes."""
 
 
 def sources(folder):
@@ -97,12 +84,6 @@ def run(*command, folder, **variables):
     return found.stdout
 
 
-def solved(program, folder):
-    """Central films and damping of a point by the film formula [m, N s/m2]."""
-    contacts = json.loads(run(program, "solve", "nu308", *POINT, "--solver", "formula", folder=folder))
-    return [(contact["central_film"], contact["damping"]) for contact in contacts]
-
-
 def replaced(path, old, new):
     """Change a text that a file has once."""
     text = path.read_text(encoding="utf-8")
@@ -111,12 +92,12 @@ def replaced(path, old, new):
 
 
 def test_the_two_commands_of_the_readme_in_one_clone_and_an_upgrade(tmp_path):
-    """An upgrade computes with the new code: a compiled function in an unchanged file calls one that changed, and
-    stored points of the old code are not taken over."""
+    """An upgrade computes with the new code: stored points of the old code are not taken over. That compiled functions
+    see it, too, is held by `tests/unit/test_compiled.py`."""
     clone = sources(tmp_path / "Prüfstand 2, neu" / "clone")
     packages = environment(clone / ".venv")
     python, program = clone / ".venv" / "bin" / "python", clone / ".venv" / "bin" / "ehdmaps"
-    elsewhere, cache = tmp_path / "elsewhere", str(tmp_path / "cache")
+    elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
     (elsewhere / "job.toml").write_text(JOB)
     where = "import mbs; from ehdmaps import BearingGeometry; import ehdmaps; print(ehdmaps.__file__)"
@@ -124,7 +105,7 @@ def test_the_two_commands_of_the_readme_in_one_clone_and_an_upgrade(tmp_path):
     def computed():
         run(program, "generate", "job.toml", "-o", "map.nc", "--workers", "1", folder=elsewhere)
         with ehdmaps.open_map(elsewhere / "map.nc").dataset as dataset:
-            return dataset.load(), float(run(python, "-c", COMPILED, folder=elsewhere, XDG_CACHE_HOME=cache))
+            return dataset.load()
 
     def install(*asked):
         run(needed("bash"), ".ci/environment", *asked, folder=clone, CC=quick_compiler(tmp_path))
@@ -132,25 +113,23 @@ def test_the_two_commands_of_the_readme_in_one_clone_and_an_upgrade(tmp_path):
     install()
     found = run(python, "-c", where, folder=elsewhere)
     assert Path(found.strip()) == packages / "ehdmaps" / "__init__.py"
-    first, before, compiled = solved(program, elsewhere), *computed()
-    assert compiled == 2.0
+    before = computed()
     # what versions that kept compiled code beside the sources would have left there
     for name in ("ehdmaps", "mbs"):
         (packages / name / "physics" / "__pycache__").mkdir(parents=True, exist_ok=True)
         (packages / name / "physics" / "__pycache__" / "density-12.py311.nbi").write_bytes(b"old")
         (packages / name / "physics" / "__pycache__" / "density.cpython-311.opt-1.pyc").write_bytes(b"old")
     # to the clone itself, as the second command makes it, in a newer state
-    physics = clone / "ehdmaps" / "physics"
-    replaced(physics / "isotherm.py", "return alpha * p, alpha + 0.0 * p", "return alpha * p, 1.05 * alpha + 0.0 * p")
-    replaced(physics / "closed_form.py", "return film, film * slope", "return 1.05 * film, film * slope")
+    replaced(
+        clone / "ehdmaps" / "physics" / "closed_form.py",
+        "return film, film * slope",
+        "return 1.05 * film, film * slope",
+    )
     install("--editable", ".")
     assert not (packages / "ehdmaps").exists()
     assert not (packages / "mbs").exists()
     found = run(python, "-c", where, folder=elsewhere)
     assert Path(found.strip()) == clone / "ehdmaps" / "__init__.py"
-    after, compiled = computed()
-    assert compiled == 2.1
+    after = computed()
     np.testing.assert_allclose(after["film_offset"] / before["film_offset"], 1.05)  # round-off
     assert after.attrs["code_hash"] != before.attrs["code_hash"]
-    for old, new in zip(first, solved(program, elsewhere), strict=True):
-        assert new[0] > 1.04 * old[0]

@@ -130,21 +130,6 @@ def test_films_with_memory_at_one_speed(here, capsys, formula_maps):
     assert "law dry Hertz, ISO 16281" in dry
 
 
-@pytest.mark.slow
-def test_films_side_by_side_in_a_linear_analysis(here, capsys, formula_maps):
-    films = ("--films", "slow", "--films", "memory", "--law", "hertz")
-    status, out, err = run(capsys, "lsa", "nu308_rigid", "--map", formula_maps["NU308"], *films, "--plot", "l.png")
-    assert (status, err) == (0, "")
-    assert [line.strip() for line in out.splitlines() if "case: " in line] == [
-        "case: dry Hertz",
-        "case: formula map, slow films",
-        "case: formula map, films with memory",
-    ]
-    assert out.count("warning: bearing_left: slow films; estimated error") == 1
-    assert out.count("\nbearing_left: films with memory; estimated error") == 1
-    assert (here / "l.png").stat().st_size > 10_000
-
-
 def test_a_hammer_test_says_which_films_it_had(here, capsys, formula_maps):
     given = ("hammer", "nu308_rigid", "--map", formula_maps["NU308"], "--clearance", "20 um", "--hits", "1")
     found = []

@@ -87,14 +87,6 @@ def test_modes_have_the_damping_of_ross(machine, capsys):
     np.testing.assert_allclose(ratio[near], -wanted.real / np.abs(wanted), atol=2e-4)
 
 
-def test_lsa_and_sweep(machine, capsys):
-    _, scene = machine
-    went(capsys, "lsa", scene, "-o", scene.with_name("lsa.nc"))
-    with xr.open_dataset(scene.with_name("lsa.nc")) as dataset:
-        assert np.all(np.isfinite(dataset["response_real"]))
-    went(capsys, "sweep", scene, "--speed", "5000 rpm", "9000 rpm", "2", "--workers", "1")
-
-
 def test_critical(machine, capsys):
     name, scene = machine
     case = ROSS[name]

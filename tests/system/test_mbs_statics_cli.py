@@ -108,7 +108,7 @@ def test_stiffness_damping_and_responses_have_the_units_of_engineers(here, capsy
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("command", ["statics", "modes", "lsa", "sweep", "variants", "report"])
+@pytest.mark.parametrize("command", ["statics", "sweep", "variants", "report"])
 def test_heads_say_whether_weight_is_in_the_equilibrium(here, capsys, monkeypatch, command):
     without_budget(monkeypatch)
     short = (

@@ -142,21 +142,6 @@ def test_a_map_and_the_same_command_again(folder, done):
 
 
 @pytest.mark.slow
-def test_kill_9_of_a_running_solver_costs_nothing(folder):
-    openfoam_fake.set_mode(build_of(folder), "patient 0.3")
-    job = start(
-        command(folder, "generate", "job.toml", "--workers", "2"), cwd=folder, stdout=subprocess.PIPE, text=True
-    )
-    wait_for(lambda: len(openfoam_fake.starts(build_of(folder))) >= 3)
-    os.kill(int(openfoam_fake.starts(build_of(folder))[-1][0]), signal.SIGKILL)
-    out, _ = job.communicate(timeout=300)
-    assert job.returncode == 0
-    assert counts(out) == (0, POINTS, 0)
-    assert "1 x solved at the second try, the first ehlFoam was killed by signal 9 (SIGKILL)" in out
-    assert left_cases(folder) == []  # the second try made it good
-
-
-@pytest.mark.slow
 def test_failed_points_are_summed_up_and_tried_again_by_the_next_run(folder, done):
     openfoam_fake.set_mode(build_of(folder), "fatal")
     failed = done("generate", "job.toml", "--workers", "1", status=1)

@@ -577,12 +577,11 @@ ONE_TEMPERATURE = SMALL.replace('"20 degC", "40 degC"', '"20 degC"')
 @pytest.mark.parametrize(
     ("text", "solver"),
     [
-        (LINE, None),
         (ONE_TEMPERATURE.replace(spaced("1 N/mm", "1000 N/mm", 7), '["50 N/mm"]'), None),
         (LINE, HertzSolver()),
         (ONE_TEMPERATURE, Holey((1e3, 1e4, 31622.776601683792), version="1")),
     ],
-    ids=["one contact", "one load", "dry", "holes"],
+    ids=["one load", "one contact, dry", "holes"],
 )
 def test_every_kind_of_map_can_be_drawn(tmp_path, text, solver):
     plot_map(EHDMap(made(job_of(text), solver)), tmp_path / "a.png")

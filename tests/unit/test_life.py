@@ -183,12 +183,11 @@ def test_limits_of_viscosity_and_fatigue() -> None:
     assert fatigue_limit(22e3, 0.4, "ball") == pytest.approx(0.5e3)
 
 
-@pytest.mark.slow  # a machine of six bearings of two kinds
 def test_each_bearing_of_a_machine_has_its_life(capsys) -> None:
-    assert main(["statics", "two_stage"]) == 0
+    assert main(["statics", "nu308_rigid", "--law", "hertz"]) == 0
     said = capsys.readouterr().out
     found = re.findall(r"equivalent load (\S+) N, L10r (\S+) million turns \(ISO/TS 16281", said)
-    assert len(found) == len(re.findall(r"Hertz pressure up to .* film down to", said)) == 6
+    assert len(found) == len(re.findall(r"Hertz pressure up to ", said)) == 2
     assert all(float(load) > 0.0 and float(life) > 0.0 for load, life in found)
     assert main(["statics", "nu308_rigid", "--law", "hertz", "--speed", "0 rpm"]) in (0, 1)
     assert "L10r" not in capsys.readouterr().out  # nothing turns

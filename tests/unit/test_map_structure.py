@@ -67,8 +67,15 @@ def own(paths):
     return {law: (emap, read(emap)) for law, emap in ((law, open_map(path)) for law, path in paths.items())}
 
 
-@pytest.mark.parametrize("made_by", STRUCTURAL_LAWS)
-@pytest.mark.parametrize("read_by", STRUCTURAL_LAWS)
+# each made by one is read by itself and by the next
+@pytest.mark.parametrize(
+    ("made_by", "read_by"),
+    [
+        (law, other)
+        for law, following in zip(STRUCTURAL_LAWS, (*STRUCTURAL_LAWS[1:], STRUCTURAL_LAWS[0]), strict=True)
+        for other in (law, following)
+    ],
+)
 def test_one_map_is_the_map_of_every_structural_law(paths, own, made_by, read_by):
     emap, (other, answers) = open_map(paths[made_by], structural_law=read_by), own[read_by]
     assert (emap.structural_law, emap.contacts) == (read_by, other.contacts)
@@ -223,7 +230,7 @@ def test_a_law_looks_at_what_it_reads(tmp_path):
     assert EHDMap(emap.dataset).reach().text.endswith("; without 1 m/s")
 
 
-@pytest.mark.parametrize(("loads", "refused"), [((0.0, 1.5e3), True), ((6e4, 1e9), True), ((0.0, 1e1), False)])
+@pytest.mark.parametrize(("loads", "refused"), [((6e4, 1e9), True), ((0.0, 1e1), False)])
 def test_the_end_of_a_backbone_line_counts_as_far_as_the_map_goes(tmp_path, loads, refused):
     """A line that lacks loads of the map is not continued over them; what it lacks beyond them is of no importance."""
     plain = tmp_path / "plain.nc"

@@ -138,8 +138,9 @@ def test_what_is_not_valid_is_drawn_and_named(spectra):
     ]
 
 
-@pytest.mark.parametrize("words", ["law", "Reynolds map", "Reynolds map, films with memory, oil air, half space"])
-@pytest.mark.parametrize("count", [1, 3, 4])
+@pytest.mark.parametrize(
+    ("words", "count"), [("law", 1), ("law", 4), ("Reynolds map, films with memory, oil air, half space", 4)]
+)
 def test_the_legend_of_the_laws_lies_below_the_curves_and_on_the_page(spectra, words, count):
     figure = campbell_figure("title", [f"{words} {k}" for k in range(count)], [spectra] * count, REFERENCE)
     figure.draw_without_rendering()

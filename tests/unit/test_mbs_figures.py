@@ -439,7 +439,7 @@ class TestSweepFigure:
         assert not any(bands(panel) for panel in figure.axes)
 
     @pytest.mark.slow
-    @pytest.mark.parametrize("count", [1, 20])
+    @pytest.mark.parametrize("count", [20])
     def test_names_of_bearings_lie_off_the_curves_and_on_the_page(self, result, count):
         of = result.bearings
         wide = {

@@ -130,7 +130,7 @@ def test_analyses_load_no_command_and_neither_they_nor_commands_load_figures():
 class TestDefaultLaw:
     """Without a law commands and `assemble` take the films of the table for every kind of bearing."""
 
-    @pytest.mark.parametrize("scene", ["nu308_rigid", MASSES])
+    @pytest.mark.parametrize("scene", [MASSES])
     def test_library_and_command_agree(self, tmp_path, capsys, scene):
         if "\n" in scene:
             (tmp_path / "own.toml").write_text(scene)
@@ -361,7 +361,7 @@ def test_responses_over_a_pitch_are_those_at_each_cage_angle():
     assert np.all(data["response_most"] > data["response_least"])
 
 
-@pytest.mark.parametrize(("scene", "law"), [("n1014_testrig", "hertz:1e-7 s"), ("n1014_testrig", "formula")])
+@pytest.mark.parametrize(("scene", "law"), [("n1014_testrig", "formula")])
 def test_peaks_of_a_sweep_are_those_of_a_linear_analysis_at_the_same_speed(scene, law):
     """A coarse axis steps over every peak: both look between its frequencies, at the same places."""
     model = assemble(dataclasses.replace(read_scene(scene), frequencies=tuple(np.linspace(130.0, 3030.0, 30))), law)

@@ -353,24 +353,6 @@ class TestCases:
 
 
 class TestCommand:
-    @pytest.mark.slow
-    def test_table_of_two_cases(self, tmp_path):
-        arguments = given(
-            clearance=["0 um", "20 um"],
-            speed=["500 rpm", "2500 rpm", "3"],
-            cage_angles="2",
-            output=str(tmp_path / "s.nc"),
-            plot=str(tmp_path / "s.png"),
-        )
-        text, status = command.run(arguments)
-        assert status == 0
-        assert "case: 20 um" in text
-        assert "3 speeds from 500 rpm to 2500 rpm; responses within" in text
-        assert "mean of 2 cage angles" in text
-        assert "undamped modes" in text and "complex modes" in text
-        assert (tmp_path / "s.png").stat().st_size > 20_000
-        assert (tmp_path / "s.nc").stat().st_size > 10_000
-
     def test_a_case_without_equilibrium_is_named(self, tmp_path):
         text = read_scene("nu308_rigid").text.replace('against = "ring_left"\nforce', "force")
         text = text.replace('stiffness = { y = "1e5 N/m", z = "1e5 N/m" }', 'stiffness = { x = "1e5 N/m" }')

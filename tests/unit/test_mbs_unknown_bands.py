@@ -71,8 +71,6 @@ def test_machines_from_a_file_and_from_python_have_the_same_bands():
         assert {term.name for term in first.terms} == {term.name for term in second.terms}
         for side in ("low", "high"):
             np.testing.assert_allclose(getattr(second, side), getattr(first, side), rtol=1e-9)
-    close = mbs.modes(assemble(mbs.know(own, "clearance = +- 0 um"), "formula")).bands
-    assert np.all(close.frequency.high - close.frequency.low <= second_width(bands[1]))
     with pytest.raises(InputError, match="allowed: clearance"):
         mbs.know(own, "clearnce = 1 um")
 
@@ -81,11 +79,6 @@ def by_hand(one):
     """A bearing of the same place, put together anew."""
     geometry = ehdmaps.BearingGeometry.named("NU308")
     return mbs.BearingSpec(one.name, one.inner, one.outer, geometry, profile=one.profile, slices=one.slices)
-
-
-def second_width(bands):
-    """Widths of the bands of frequencies, and round-off."""
-    return (bands.frequency.high - bands.frequency.low) * (1.0 + 1e-9)
 
 
 def test_nine_tenths_of_drawn_machines_are_inside():
@@ -241,12 +234,10 @@ def test_a_look_at_one_bearing_is_the_command_with_another_clearance(tmp_path, m
 @pytest.mark.parametrize(
     ("asked", "names"),
     [
-        (["statics"], ["bearing_stiffness", "hertz_pressure"]),
         (["lsa"], ["peak_frequency", "peak_level"]),
-        (["sweep", "--speed", "1000 rpm", "2000 rpm", "3"], ["complex_frequency", "complex_damping_ratio"]),
         (["critical", "--speed", "1000 rpm", "4000 rpm", "3"], ["critical_speed", "critical_damping_ratio"]),
     ],
-    ids=["statics", "lsa", "sweep", "critical"],
+    ids=["lsa", "critical"],
 )
 @pytest.mark.usefixtures("few_unknowns")
 def test_results_lie_within_their_bands(asked, names, tmp_path, monkeypatch, capsys):

@@ -124,5 +124,6 @@ def test_too_few_solutions_make_no_lines(tmp_path):
             no = FilmSolution(Status.STAGNATED, "no")
             return tuple(no for _ in loads)
 
-    generated = generate(JOB, tmp_path / "c.nc", 1, solver=Lost())
+    one = TEXT.replace('["0.5 m/s", "2 m/s"]', '["0.5 m/s"]').replace('["60 degC", "80 degC"]', '["60 degC"]')
+    generated = generate(parse_job(one, "a", "a"), tmp_path / "c.nc", 1, solver=Lost())
     assert generated.backbone is None and "correction" not in generated.dataset.attrs

@@ -109,7 +109,7 @@ SCENES = {
     "bodies": lambda: _with(read_scene("nu308_rigid"), rollers_as_bodies=True),
     "coupled": lambda: _with(read_scene("nu308_rigid"), slices_coupled=True, slices=5),
     "tapered, ribs, balls": lambda: parse_scene(MASSES, "masses", "masses.toml"),
-    "gears, housing, two kinds": lambda: read_scene("two_stage"),
+    "gears, housing": lambda: read_scene("gearbox"),
 }
 
 

@@ -97,12 +97,11 @@ WITHIN = {"load": slice(4, LOST), "entrainment_speed": slice(1, None), "temperat
 @pytest.mark.parametrize(
     ("kind", "outside", "more", "cut"),
     [
-        *(("inner", "clamp", {}, {axis: places}) for axis, places in WITHIN.items()),
         ("series", "asymptote", {}, WITHIN),
         ("inner", "clamp", {"supply": OilSupply(2e-6)}, {"load": slice(None, LOST)}),
         ("inner", "clamp", {"surface": Surface(roughness=3e-7)}, {"load": slice(None, LOST)}),
     ],
-    ids=["loads", "speeds", "temperatures", "all axes", "on a layer", "rough"],
+    ids=["all axes", "on a layer", "rough"],
 )
 def test_a_law_is_that_of_a_map_whose_axes_end_at_the_reach(whole, kind, outside, more, cut):
     """Within the reach and beyond it, to the round-off of splines over another number of nodes."""

@@ -207,12 +207,9 @@ ROUGH = Surface(2e-7)
 LAWS = [
     ("inner", "clamp", 2e-7, ROUGH),
     ("inner", "asymptote", math.inf, ROUGH),
-    ("inner", "asymptote", 2e-7, SMOOTH),
-    ("inner", "asymptote", 1e-4, ROUGH),
-    ("inner", "error", 5e-6, ROUGH),
     ("series", "asymptote", 5e-6, SMOOTH),
 ]
-"""Each layer and each roughness with the policies, one of them in a series."""
+"""A thin layer, a thick one and none, rough and smooth, one of them in a series."""
 
 
 @pytest.mark.slow

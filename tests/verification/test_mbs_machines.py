@@ -34,7 +34,6 @@ from mbs.transient.run import run
 
 RPM = math.pi / 30.0
 FROM, TO = 500.0 * RPM, 2500.0 * RPM
-LEAST_SHARE = 0.05
 
 
 @pytest.fixture(scope="module")
@@ -123,21 +122,6 @@ class TestGearbox:
             nearest = middle[np.nanargmin(np.abs(middle - peak.frequency))]
             # Half the width of a peak with 2 % damping, and what it lags in a sweep.
             assert peak.frequency == pytest.approx(nearest, rel=0.015)
-
-    def test_a_finer_run_shows_the_same_levels(self, emap):
-        """Half the shipped step and twice its slices move levels by tenths of a dB."""
-        found = []
-        for step, slices in ((10e-6, 21), (5e-6, 41)):
-            bearings = tuple(dataclasses.replace(entry, slices=slices) for entry in self.scene.bearings)
-            model = assemble(self.scene.with_bearings(bearings), "map", emap)
-            speed = SpeedProfile.constant(1500.0 * RPM)
-            start = equilibrium(model.system, Operation(1500.0 * RPM))
-            settings = Settings(step, 20e-6, 0.9)
-            recorded = run(model.system, speed, 0.12, settings, self.scene.sensors, displacement=start.displacement)
-            found.append(recorded.signals[2000:])  # two turns, after five decay times of a mode at 1.1 kHz with 2 %
-        levels = [20.0 * np.log10(np.sqrt(np.mean(part**2, axis=0))) for part in found]
-        # Periods at 5 kHz differ by 0.6 % between these steps, which moves resonances under the orders.
-        np.testing.assert_allclose(levels[0], levels[1], atol=0.5)
 
 
 @pytest.mark.slow
