@@ -59,19 +59,6 @@ def bend_of(alpha: FloatArray, exponent: FloatArray) -> FloatArray:
     return np.asarray((1.0 - exponent) * np.sqrt(ALPHA / alpha))
 
 
-def exponent_of(alpha: float, bend: float) -> float:
-    """Roelands' z of a bend, the inverse of `bend_of`.
-
-    Parameters
-    ----------
-    alpha : float
-        Pressure-viscosity coefficient [1/Pa], > 0.
-    bend : float
-        The bend.
-    """
-    return float(1.0 - bend * np.sqrt(alpha / ALPHA))
-
-
 def valley_shift(oil_number: FloatArray, alpha: FloatArray, exponent: FloatArray) -> FloatArray:
     """Height of the valley above its formula, in ln M.
 
@@ -101,19 +88,6 @@ def zeta_of(load_number: FloatArray, oil_number: FloatArray, shift: FloatArray |
         That of `valley_shift`; zero in the isoviscous part.
     """
     return np.asarray(np.log(load_number / valley_load_number(oil_number)) - shift)
-
-
-def load_number_at(zeta: FloatArray, oil_number: FloatArray, shift: FloatArray | float = 0.0) -> FloatArray:
-    """Moes' M of a place zeta, the inverse of `zeta_of`.
-
-    Parameters
-    ----------
-    zeta : ndarray
-        The coordinate.
-    oil_number, shift
-        The arguments of `zeta_of`.
-    """
-    return np.asarray(np.exp(zeta + shift) * valley_load_number(oil_number))
 
 
 TABLE_OF = "reynolds"

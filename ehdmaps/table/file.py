@@ -33,24 +33,8 @@ SHIPPED = "film_table.nc"
 KIND, FORMAT, CHECKSUM = "film table", "2", "content_sha256"
 
 AXES = ("zeta", "size", "alpha", "bend")
-_MEANING = {
-    "piezoviscous": (
-        ("ln(M/M_valley(L)) - shift(L, alpha, z), see ehdmaps.table.coordinates", "1"),
-        ("ln L, of Moes' oil number L", "1"),
-        ("ln alpha, alpha = d ln eta/dp at p = 0 in 1/Pa", "1"),
-        ("(1 - z) sqrt(17/GPa / alpha) with the exponent z of Roelands' law", "1"),
-    ),
-    "isoviscous": (
-        ("ln(M/M_valley(L)) - shift(L, alpha, z), see ehdmaps.table.coordinates", "1"),
-        ("ln(L/alpha), L/alpha in Pa", "1"),
-        ("alpha = d ln eta/dp at p = 0", "1/Pa"),
-        ("1 - z, z the exponent of Roelands' law", "1"),
-    ),
-}
-"""Parts of a table, and what their axes mean."""
-
-_BITS = 16
-"""Binary digits of a value that are kept: behind the point, or of its mantissa where it is smaller than one."""
+PARTS = ("piezoviscous", "isoviscous")
+"""Axes and parts of a table."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +112,7 @@ def read_tables(path: Path) -> TableFile:
                 raise MapError(f"{path}: is no film table of this version; take the one that comes with ehdmaps")
             tables = {}
             for law, group in file.groups.items():
-                parts = {part: _read_nodes(group.groups[part], path) for part in _MEANING}
+                parts = {part: _read_nodes(group.groups[part], path) for part in PARTS}
                 tables[law] = FilmTable(**parts, compressible=law != "incompressible")
     except DAMAGE as error:
         raise MapError(f"{path}: cannot be read as a film table ({error!s:.300}); make it again") from None
@@ -151,49 +135,6 @@ def _read_nodes(group: Any, path: Path) -> Nodes:
     return Nodes(axes, values, codes)
 
 
-def write_tables(path: Path, tables: TableFile) -> None:
-    """Write a file of films, with its checksum.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    tables : TableFile
-        Tables and attributes.
-    """
-    from netCDF4 import Dataset
-
-    with Dataset(path, "w", format="NETCDF4") as file:
-        attributes = {**tables.attributes, MADE_AS: KIND, "table_format": FORMAT, CHECKSUM: content_sha256(tables)}
-        file.setncatts(attributes)
-        for law, table in tables.tables.items():
-            for part, meanings in _MEANING.items():
-                _write_nodes(file.createGroup(f"{law}/{part}"), getattr(table, part), meanings)
-
-
-def _write_nodes(group: Any, nodes: Nodes, meanings: tuple[tuple[str, str], ...]) -> None:
-    """One part of a table to its group."""
-    group.setncattr("fields", " ".join(field.name for field in FIELDS))
-    group.createDimension("field", len(FIELDS))
-    for name, (meaning, unit) in zip(AXES, meanings, strict=True):
-        places = getattr(nodes.axes, name)
-        group.createDimension(name, places.size)
-        group.createDimension(f"{name}_cell", places.size - 1)
-        variable = group.createVariable(name, "f8", (name,))
-        variable[:] = places
-        variable.setncatts({"long_name": meaning, "units": unit})
-    for name, kind, array, suffix, meaning in (
-        ("values", "f4", nodes.values, "", "smooth forms of reduced films, see ehdmaps.table.fields"),
-        ("error_codes", "u1", nodes.codes, "_cell", "their errors between nodes, see ehdmaps.table.nodes.encoded"),
-    ):
-        variable = group.createVariable(
-            name, kind, ("field", *(f"{axis}{suffix}" for axis in AXES)), compression="zlib", complevel=6, shuffle=True,
-            chunksizes=(1, *array.shape[:-1]),
-        )  # fmt: skip
-        variable[:] = np.moveaxis(array, -1, 0)
-        variable.setncattr("long_name", meaning)
-
-
 def content_sha256(tables: TableFile) -> str:
     """Checksum over nodes, values and errors of all tables.
 
@@ -204,7 +145,7 @@ def content_sha256(tables: TableFile) -> str:
     """
     digest = hashlib.sha256(f"{KIND} {FORMAT}".encode())
     for law, table in sorted(tables.tables.items()):
-        for part in _MEANING:
+        for part in PARTS:
             nodes: Nodes = getattr(table, part)
             digest.update(json.dumps([law, part, *nodes.values.shape]).encode())
             for name in AXES:
@@ -217,16 +158,3 @@ def content_sha256(tables: TableFile) -> str:
 def _bytes(values: FloatArray | npt.NDArray[np.float32] | ByteArray) -> bytes:
     """Values as little-endian bytes."""
     return np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<")).tobytes()
-
-
-def rounded(values: FloatArray) -> npt.NDArray[np.float32]:
-    """Values as a file holds them.
-
-    Parameters
-    ----------
-    values : ndarray
-        Finite smooth forms.
-    """
-    _, power = np.frexp(np.minimum(np.abs(values), 0.5))
-    step = np.ldexp(1.0, power - _BITS)
-    return np.asarray(step * np.round(values / step), dtype=np.float32)

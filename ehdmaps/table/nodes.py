@@ -43,7 +43,7 @@ class Nodes:
     values : ndarray of float32, shape (n_zeta, n_size, n_alpha, n_bend, fields)
         Smooth forms of `FIELDS` there.
     codes : ndarray of uint8, shape (n_zeta - 1, n_size - 1, n_alpha - 1, n_bend - 1, fields)
-        Their errors in each cell, see `encoded`.
+        Their errors in each cell, see `decoded`.
     """
 
     axes: Axes
@@ -118,26 +118,13 @@ def nodes_problem(
     return "" if np.all(np.isfinite(values)) else "values that are no finite numbers"
 
 
-def encoded(errors: FloatArray) -> ByteArray:
-    """Errors in a byte each, rounded up; NaN becomes the largest.
-
-    Parameters
-    ----------
-    errors : ndarray
-        Errors of smooth forms, >= 0.
-    """
-    clipped = np.clip(np.where(np.isnan(errors), LARGEST_ERROR, errors), LEAST_ERROR, LARGEST_ERROR)
-    span = np.log(LARGEST_ERROR / LEAST_ERROR)
-    return np.asarray(np.ceil(CODES * np.log(clipped / LEAST_ERROR) / span - 1e-9).astype(np.uint8))
-
-
 def decoded(codes: ByteArray) -> FloatArray:
     """Errors of their bytes.
 
     Parameters
     ----------
     codes : ndarray of uint8
-        Those of `encoded`.
+        Bytes that stand for errors from `LEAST_ERROR` to `LARGEST_ERROR`, evenly in their logarithms.
     """
     return np.asarray(_DECODED[codes])
 

@@ -9,8 +9,9 @@ from pathlib import Path
 
 from ehdmaps.outputs import Output, check_outputs, dataset_kind, written_aside
 from ehdmaps.program import Parser, run, tell
-from ehdmaps.table.file import KIND, write_tables
+from ehdmaps.table.file import KIND
 from ehdmaps.table.points import file as points_file
+from examples.tables.files import write_point_table, write_tables
 from examples.tables.lines import make_tables
 from examples.tables.points import make_point_table
 
@@ -45,7 +46,7 @@ def _command(arguments: argparse.Namespace) -> tuple[str, int]:
     else:
         table = make_point_table(progress=lambda done, of: _tell("", done, of))
         with written_aside(path, kind) as aside:
-            points_file.write_point_table(aside, table)
+            write_point_table(aside, table)
     return f"{path}: written", 0
 
 

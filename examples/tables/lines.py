@@ -26,13 +26,14 @@ from ehdmaps.physics.isotherm import PressureViscosity
 from ehdmaps.physics.rheology import ShearLaw
 from ehdmaps.physics.solution import Estimate
 from ehdmaps.physics.viscosity import ROELANDS_PRESSURE
-from ehdmaps.table.coordinates import GRID, exponent_of, load_number_at, valley_shift
+from ehdmaps.table.coordinates import GRID, valley_shift
 from ehdmaps.table.fields import FIELDS, FILMS, LAW, NATURAL_FREQUENCIES, RESPONSES
-from ehdmaps.table.file import TableFile, rounded
+from ehdmaps.table.file import TableFile
 from ehdmaps.table.films import FilmTable
 from ehdmaps.table.interpolation import Axes, heavier_films, place_of
-from ehdmaps.table.nodes import BEYOND_HEAVY, OTHER_FILMS, Nodes, encoded
+from ehdmaps.table.nodes import BEYOND_HEAVY, OTHER_FILMS, Nodes
 from ehdmaps.version import version
+from examples.tables.files import encoded, exponent_of, load_number_at, rounded
 
 RESOLUTION = Resolution(**GRID)
 """Of all solves: with half as many cells the grid's errors are what limits the table, with more the nodes are."""

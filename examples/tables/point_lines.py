@@ -13,9 +13,9 @@ from ehdmaps.physics.point.ellipse import elliptic_numbers
 from ehdmaps.physics.viscosity import ROELANDS_PRESSURE
 from ehdmaps.point.problem import PointProblem, start_film
 from ehdmaps.point.two_grids import MOST_ERROR, SHARES, THIN, PointGroups, Resolution, responses, solve_groups
-from ehdmaps.table.coordinates import exponent_of
 from ehdmaps.table.fields import NATURAL_FREQUENCIES
 from ehdmaps.table.points.nodes import FILMS, point_load_number
+from examples.tables.files import exponent_of
 
 RESOLUTION, THIN_RESOLUTION = Resolution(), Resolution((44, 16), (66, 24))
 """Grids of the table, and those of thin films, whose damping and smallest film need more cells."""

@@ -13,11 +13,10 @@ from dataclasses import replace
 import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray
-from ehdmaps.table.file import rounded
-from ehdmaps.table.nodes import encoded
 from ehdmaps.table.points.films import PointTable
 from ehdmaps.table.points.nodes import ERRORS, FIELDS, FILMS, PointAxes, PointNodes
 from ehdmaps.version import version
+from examples.tables.files import encoded, rounded
 from examples.tables.lines import middles
 from examples.tables.point_errors import (
     COVERED,

@@ -23,14 +23,15 @@ from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.solution import Status
-from ehdmaps.table.coordinates import load_number_at, outside_family, valley_shift, zeta_of
+from ehdmaps.table.coordinates import outside_family, valley_shift, zeta_of
 from ehdmaps.table.fields import FIELDS, FILMS, LAW
-from ehdmaps.table.file import SHIPPED, content_sha256, film_table, read_tables, shipped_tables, write_tables
+from ehdmaps.table.file import SHIPPED, content_sha256, film_table, read_tables, shipped_tables
 from ehdmaps.table.films import TableFilms
 from ehdmaps.table.interpolation import Axes, place_of
 from ehdmaps.table.nodes import BEYOND_HEAVY, Nodes
 from examples.tables import lines as table_make
 from examples.tables.__main__ import main as make
+from examples.tables.files import load_number_at, write_tables
 from examples.tables.lines import (
     PIEZOVISCOUS,
     filled,

@@ -21,7 +21,7 @@ from ehdmaps.physics.solids import STEEL as MATERIAL
 from ehdmaps.physics.solution import Status
 from ehdmaps.point import solve
 from ehdmaps.table.file import shipped_tables
-from ehdmaps.table.points.file import SHIPPED, read_point_table, shipped_point_table, write_point_table
+from ehdmaps.table.points.file import SHIPPED, read_point_table, shipped_point_table
 from ehdmaps.table.points.films import NUMBERS
 from ehdmaps.table.points.nodes import ERRORS, FIELDS, HOLE, PointAxes, point_load_number
 from ehdmaps.table.points.response import read_response
@@ -29,6 +29,7 @@ from examples.tables import point_errors as errors
 from examples.tables import point_heavy as heavy
 from examples.tables import point_lines as lines
 from examples.tables import points as maker
+from examples.tables.files import write_point_table
 from examples.tables.point_lines import SolvedPoint
 
 STEEL = 230.769e9

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from ehdmaps.jobs.cli import main
-from ehdmaps.table.file import SHIPPED, shipped_tables, write_tables
+from ehdmaps.table.file import SHIPPED, shipped_tables
 from ehdmaps.table.nodes import nodes_problem
 from ehdmaps.table.points import file as points
+from examples.tables.files import write_tables
 
 TABLE = Path(points.__file__).parents[1] / SHIPPED
 POINTS = Path(points.__file__).parent / points.SHIPPED

@@ -22,14 +22,8 @@ SHIPPED = "point_table.nc"
 
 KIND, FORMAT = "film table of points", "2"
 
-AXES = {
-    "zeta": ("ln(M/M_knee(L, kappa)), see ehdmaps.table.points.nodes", "1"),
-    "size": ("ln L, of Moes' oil number L", "1"),
-    "shape": ("ln kappa, the ellipticity of the dry contact", "1"),
-    "alpha": ("ln alpha, alpha = d ln eta/dp at p = 0 in 1/Pa", "1"),
-    "bend": ("(1 - z) sqrt(17/GPa / alpha) with the exponent z of Roelands' law", "1"),
-}
-"""Axes of the table, their meaning and unit."""
+AXES = ("zeta", "size", "shape", "alpha", "bend")
+"""Axes of the table."""
 
 
 @lru_cache(maxsize=1)
@@ -72,45 +66,6 @@ def read_point_table(path: Path) -> PointTable:
     if attributes.get(CHECKSUM) != content_sha256(table):
         raise MapError(f"{path}: was changed since it was made: its content does not match {CHECKSUM}; make it again")
     return table
-
-
-def write_point_table(path: Path, table: PointTable) -> None:
-    """Write a file, with its checksum.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    table : PointTable
-        Nodes and attributes.
-    """
-    from netCDF4 import Dataset
-
-    nodes = table.nodes
-    own = {MADE_AS: KIND, "table_format": FORMAT, "errors": " ".join(ERRORS), CHECKSUM: content_sha256(table)}
-    with Dataset(path, "w", format="NETCDF4") as file:
-        file.setncatts({**table.attributes, **own})
-        file.createDimension("field", len(FIELDS))
-        file.createDimension("error", len(ERRORS))
-        for (name, (meaning, unit)), places in zip(AXES.items(), nodes.axes.all, strict=True):
-            file.createDimension(name, places.size)
-            file.createDimension(f"{name}_cell", places.size - 1)
-            variable = file.createVariable(name, "f8", (name,))
-            variable[:] = places
-            variable.setncatts({"long_name": meaning, "units": unit})
-        for name, kind, array, first, suffix, meaning in (
-            ("values", "f4", nodes.values, "field", "", "forms of reduced films, see ehdmaps.table.points.nodes"),
-            ("error_codes", "u1", nodes.codes, "error", "_cell", "their errors, see ehdmaps.table.nodes.encoded"),
-        ):
-            variable = file.createVariable(
-                name, kind, (first, *(f"{axis}{suffix}" for axis in AXES)), compression="zlib", complevel=9,
-                shuffle=True, chunksizes=(array.shape[-1], *array.shape[:-1]),
-            )  # fmt: skip
-            variable[:] = np.moveaxis(array, -1, 0)
-            variable.setncattr("long_name", meaning)
-        marks = file.createVariable("continued", "u1", [f"{axis}_cell" for axis in AXES], compression="zlib")
-        marks[:] = nodes.continued
-        marks.setncattr("long_name", "1 where a number goes on from lighter loads")
 
 
 def content_sha256(table: PointTable) -> str:

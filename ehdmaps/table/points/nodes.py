@@ -232,7 +232,7 @@ class PointNodes:
     values : ndarray of float32, shape (n_zeta, n_size, n_shape, n_alpha, n_bend, fields)
         Forms of `FIELDS` there.
     codes : ndarray of uint8, shape (cells along each axis, errors)
-        Their errors in each cell in the order of `ERRORS`, see `ehdmaps.table.nodes.encoded`; `HOLE` where a corner has
+        Their errors in each cell in the order of `ERRORS`, see `ehdmaps.table.nodes.decoded`; `HOLE` where a corner has
         no solution.
     continued : ndarray of bool, shape (cells along each axis)
         Cells with a number that goes on from lighter loads.
