@@ -18,7 +18,7 @@ the ratings of Koyo (NU2240R), FAG (NU2240E.M1) and SKF (NU 2240 EC, with 15 % l
 it) and 1370 kN, take (1460/1370)^(4/3) times as many; 19 are taken, and a C0 of 1.96 MN, 1.8 MN times that.
 
 Double row bearings NN 30 and NNU 49 have E or F, and both ratings, which tell rollers of whole or half millimetres:
-of all in the table the dynamic rating then is within 2 %. NNCF 50 have two rows of the rollers of NCF 30: SKF's E of
+of all in the table the dynamic rating then is within 1.5 %. NNCF 50 have two rows of the rollers of NCF 30: SKF's E of
 both are alike, and C0 is twice as much within 3 %. How far the rows stand apart no catalogue says: three ribs of equal
 width are taken. Rollers of both rows stand side by side, where force over an angle of the cage changes most.
 
@@ -28,8 +28,8 @@ References
 ----------
 ISO 15, Rolling bearings - Radial bearings - Boundary dimensions. ISO 76, Rolling bearings - Static load ratings.
 Raceways of series 2, 22, 3, 23: catalogues of Schaeffler and Koyo, which agree; of series 10: Schaeffler, some makers
-differ by 0.5 mm or so. Static ratings: SKF, Rolling bearings (general catalogue), suffix ECP. NN, NNU: NTN, Ball and
-Roller Bearings, 2202-E.
+differ by 0.5 mm or so. Static ratings: SKF, Rolling bearings (general catalogue), suffix ECP. NN, NNU: NSK, Super
+Precision Bearings.
 """
 
 from __future__ import annotations
@@ -173,7 +173,7 @@ def estimate(designation: str, basic_static_rating: float | None = None) -> Bear
     length, table_of = (20, "SKF's ") if basic_static_rating is None else (6, "")
     if entry.series in DOUBLE.values():
         errors = DOUBLE_ERRORS.format(4, length)
-        table_of = "NTN's " * bool(table_of) if FULL not in entry.series else table_of
+        table_of = "NSK's " * bool(table_of) if FULL not in entry.series else table_of
     else:
         errors = ERRORS.format(4 if entry.series.startswith(FULL) else 12, length, 1)
     return _geometry(name, entry, rating, errors, clearance, table_of)

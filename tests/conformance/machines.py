@@ -70,7 +70,7 @@ FULL = '["x", "y", "z", "theta_y", "theta_z"]'
 
 SLICES = "slices = 5"
 NU = f'bearing = "NU308"\n{SLICES}\ndiametral_clearance = "10 um"'
-NEEDLE, NN, NNU = (NU.replace("NU308", name) for name in ("NA4908", "NN3014", "NNU4920"))
+NEEDLE, NN, NNU = (NU.replace("NU308", name) for name in ("NA4908", "NN3016", "NNU4920"))
 FEW = """
 geometry = { inner_raceway_diameter = "52 mm", outer_raceway_diameter = "80 mm", roller_diameter = "14 mm", \
 roller_length = "14 mm", rollers = 7, diametral_clearance = "5 um" }

@@ -133,7 +133,7 @@ def test_rollers_as_bodies_stand_in_both_rows():
 
 
 def test_the_catalogue_has_rollers_as_they_are_made():
-    """Both ratings of NN and NNU agree on rollers of whole or half millimetres within 2 % of C; NNCF has NCF's."""
+    """Both ratings of NN and NNU agree on rollers of whole or half millimetres within 1.5 % of C; NNCF has NCF's."""
     ratios = []
     for name in _doubles():
         found = estimate(name)
@@ -150,13 +150,13 @@ def test_the_catalogue_has_rollers_as_they_are_made():
         assert static == pytest.approx(row[5], rel=1e-9)
         assert 2e3 * found.roller_diameter == pytest.approx(round(2e3 * found.roller_diameter), abs=1e-9)
         ratios.append(dynamic / row[4])
-    assert len(ratios) == 39 and np.max(np.abs(np.array(ratios) - 1.0)) < 0.02
+    assert len(ratios) == 39 and np.max(np.abs(np.array(ratios) - 1.0)) < 0.015
 
 
 def test_the_page_has_its_rows(capsys):
     assert main(["bearing", "NN3014", "--load", "5 kN", "--speed", "1000 rpm", "--law", "hertz"]) == 0
     out = capsys.readouterr().out
-    assert "50 rollers in 2 rows, 12.77 mm apart" in out and "of 50 rollers carry" in out
+    assert "50 rollers in 2 rows, 12.67 mm apart" in out and "of 50 rollers carry" in out
     assert main(["bearing", "NN3014", "--load", "5 kN", "--axial", "1 kN", "--speed", "1000 rpm"]) == 2
     assert "N, NU, NN and NNU have ribs on one ring only" in capsys.readouterr().err
     ask = ["bearing", "NNCF5010", "--load", "5 kN", "--axial", "1 kN", "--speed", "1000 rpm", "--law", "hertz"]

@@ -15,9 +15,9 @@ its balls, and nothing presses more. Their contact angle is that of the factor e
 tell their balls, the static one by 4600 MPa. ISO 281 reduces the dynamic one by a factor that is taken as that of other
 bearings, 0.95: with 0.90 and 1.0 they would have a tenth fewer and more, at equal Z Dw^2.
 
-Both ratings of a single direction thrust bearing tell its balls: of all in the table they agree on balls that are
-a whole number of 32nds of an inch within 0.4 %, and on C within 1 %. The entries were made without the catalogue at
-hand; those that do not agree so were left out.
+Both ratings of a single direction thrust bearing tell its balls, of 37 bearings their number too: 35 of these have
+balls of a whole number of 32nds of an inch within 0.4 %. Of the others two or three numbers are within the digits of C;
+balls as they are made decide.
 
 The clearance of the others is axial. It takes no part of the radial distance of grooves, but shifts the rows.
 
@@ -84,7 +84,9 @@ _ERRORS = (
     "contact angle to {} deg, pitch diameter to 2 %, ball diameter {} %, groove radii 0.515 to 0.53 of it (axial K "
     "10 %), number of balls +-1"
 )
-_MM = 1e-3
+_MM, _INCH_PART = 1e-3, 25.4e-3 / 32.0
+_RATED = 0.016
+"""Logarithm of C within which the catalogue's and that of ISO 281 are alike: its ratings have two or three digits."""
 
 
 Estimate = Callable[[str], BallGeometry]
@@ -134,8 +136,8 @@ def row_estimate(
             "ball bearing",
             row_designations(),
             "32, 33 with bores of 10 to 85 and 15 to 70 mm, 12, 13, 22, 23 with 20 to 110 mm as far as NSK makes them, "
-            "QJ2, QJ3 with 30 to 200 mm, QJ10 with 80 to 200 mm, 511 with 10 to 120, 512 to 110, 513 with 25 to 100 "
-            "and 514 with 25 to 55 mm",
+            "QJ2, QJ3 with 30 to 200 mm, QJ10 with 80 to 200 mm, 511, 512 with 10 to 190, 513 with 25 to 190 and 514 "
+            "with 25 to 180 mm",
         )
     return bearing
 
@@ -322,7 +324,9 @@ def _double_row(found: Designation) -> BallGeometry | None:
 
 
 def _thrust(found: Designation) -> BallGeometry | None:
-    """One row between washers: of each number of balls those of the static rating, as many as the dynamic one takes."""
+    """One row between washers: balls by the static rating, as many as the dynamic one takes; of numbers with which it
+    agrees, that whose balls are nearest to 32nds of an inch, as they are made.
+    """
     series, code = found.parts
     row = _entry("thrust", series, code)
     if row is None:
@@ -334,9 +338,10 @@ def _thrust(found: Designation) -> BallGeometry | None:
         if balls * diameter < 0.97 * math.pi * pitch:
             grooves = THRUST_CONFORMITY, THRUST_CONFORMITY
             one = BallGeometry(found.name, diameter, pitch, balls, *grooves, LARGEST_ANGLE)
-            tried.append((abs(math.log(ball_dynamic_rating(one) / dynamic)), balls, one))
+            sizes, doubt = diameter / _INCH_PART, abs(math.log(ball_dynamic_rating(one) / dynamic))
+            tried.append((max(doubt, _RATED), abs(round(sizes) / sizes - 1.0), balls, one))
     words = f"inner geometry estimated from catalogue dimensions and NSK's ratings (ISO 76, ISO 281): {_THRUST_ERRORS}"
-    return min(tried)[2].known({}, words)
+    return min(tried)[3].known({}, words)
 
 
 def _four_point(found: Designation, estimate: Estimate) -> BallGeometry | None:
