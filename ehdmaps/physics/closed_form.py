@@ -200,7 +200,7 @@ class FormulaSolver(ContactSolverDefaults):
             with np.errstate(all="ignore"):
                 film, slope = FILM_FORMULAS[self.film_formula](contact, state, w, entrainment_speed)
                 loss = self._loss(contact, state, w, entrainment_speed, film, slope)
-                minimum = np.minimum(film, _minimum_film(contact, state, w, entrainment_speed))
+                minimum = np.minimum(film, minimum_film(contact, state, w, entrainment_speed))
         except (OverflowError, ZeroDivisionError):  # of numbers that all loads share
             film = slope = loss = minimum = np.full(w.shape, math.nan)
         columns = zip(loads, *(part.tolist() for part in (film, slope, loss, minimum)), strict=True)
@@ -307,8 +307,22 @@ def _check(loads: tuple[float, ...], speed: float, temperature: float) -> None:
 _Film = Callable[[LineContact, LubricantState, FloatArray, float], tuple[FloatArray, FloatArray]]
 
 
-def _moes(contact: LineContact, state: LubricantState, load: FloatArray, speed: float) -> tuple[FloatArray, FloatArray]:
-    """Central film of Moes [m] and its derivative with respect to load [m2/N]."""
+def moes_film(
+    contact: LineContact, state: LubricantState, load: FloatArray, speed: float
+) -> tuple[FloatArray, FloatArray]:
+    """Central film of Moes [m] and its derivative with respect to load [m2/N].
+
+    Parameters
+    ----------
+    contact : LineContact
+        The contact.
+    state : LubricantState
+        The oil at its temperature.
+    load : array
+        w [N/m], > 0.
+    speed : float
+        Entrainment speed u [m/s], > 0.
+    """
     M, L = moes_groups(*_group_arguments(contact, state, load, speed))
     film_number, slope = moes_central_and_slope(M, L)
     film = film_from_moes(film_number, speed, state.viscosity, contact.radius, contact.reduced_modulus)
@@ -332,14 +346,20 @@ def _pan_hamrock(
 
 
 FILM_FORMULAS: Mapping[str, _Film] = {
-    "moes": _moes,
+    "moes": moes_film,
     "dowson-toyoda": _dowson_toyoda,
     "pan-hamrock": _pan_hamrock,
 }
 
 
-def _minimum_film(contact: LineContact, state: LubricantState, load: FloatArray, speed: float) -> FloatArray:
-    """Larger of the minimum films of Dowson-Higginson and of Martin [m]."""
+def minimum_film(contact: LineContact, state: LubricantState, load: FloatArray, speed: float) -> FloatArray:
+    """Larger of the minimum films of Dowson-Higginson and of Martin [m].
+
+    Parameters
+    ----------
+    contact, state, load, speed
+        Arguments of `moes_film`.
+    """
     arguments = _group_arguments(contact, state, load, speed)
     elastic = contact.radius * dowson_higginson_minimum(*dowson_groups(*arguments))
     M, _ = moes_groups(*arguments)

@@ -27,12 +27,12 @@ import numpy as np
 
 from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray
 from ehdmaps.maps.rough_layer import RoughLayer, SmoothContact, sharing_effect
+from ehdmaps.physics.closed_form import minimum_film, moes_film
 from ehdmaps.physics.contact import LineContact, OperatingPoint
-from ehdmaps.physics.films import dowson_higginson_minimum, martin_minimum, moes_central_and_slope
 from ehdmaps.physics.heat import VALLEY_OIL_NUMBER, inlet_heat, inlet_heats
 from ehdmaps.physics.hertz import half_width, natural_time
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.moes import dowson_groups, film_from_moes, moes_groups, valley_load_number
+from ehdmaps.physics.moes import moes_groups, valley_load_number
 from ehdmaps.physics.oil_supply import CORNER, compliance_ratio, damping_ratio, edge_compliance, film_ratio, passing
 from ehdmaps.physics.surface import Surface
 
@@ -133,18 +133,13 @@ def closed_contact(
 
     References
     ----------
-    Films as of `ehdmaps.physics.films`: Moes, Dowson and Higginson, Martin.
+    Films as of `ehdmaps.physics.closed_form`: Moes, Dowson and Higginson, Martin.
     """
-    state = lubricant.at(temperature)
-    viscosity, alpha = state.viscosity, state.pressure_viscosity.pressure_viscosity
-    radius, modulus = contact.radius, contact.reduced_modulus
-    groups = (load, speed, viscosity, alpha, radius, modulus)
-    M, L = moes_groups(*groups)
-    H, slope = moes_central_and_slope(M, L)
-    film = np.asarray(film_from_moes(H, speed, viscosity, radius, modulus))
-    rigid = film_from_moes(martin_minimum(M), speed, viscosity, radius, modulus)
-    smallest = np.minimum(np.maximum(rigid, radius * dowson_higginson_minimum(*dowson_groups(*groups))), film)
-    gives = np.maximum(-np.asarray(film_from_moes(slope * M / load, speed, viscosity, radius, modulus)), 0.0)
+    state, radius, modulus = lubricant.at(temperature), contact.radius, contact.reduced_modulus
+    alpha = state.pressure_viscosity.pressure_viscosity
+    M, L = moes_groups(load, speed, state.viscosity, alpha, radius, modulus)
+    film, slope = moes_film(contact, state, load, speed)
+    smallest, gives = np.minimum(minimum_film(contact, state, load, speed), film), np.maximum(-slope, 0.0)
     time = np.asarray(natural_time(load, film, speed, radius, modulus))
     width = np.asarray(half_width(load, radius, modulus))
     edge = 4.0 / (math.pi * modulus) * _SPEED_EXPONENT * film * radius / (width * speed)
