@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -129,20 +130,34 @@ def brought_by_speed(
     approaches : callable
         Approaches of all slices at a sample [m], by its index.
     """
-    count = len(conditions)
-    if isinstance(law, DryLaw) or len(set(conditions)) == 1:
-        return 0.0
-    ends = np.unique(np.linspace(0, count - 1, min(_PARTS, count - 1) + 1).astype(int)).tolist()
-    total = 0.0
-    for begin, end in pairwise(ends):
-        if conditions[begin] == conditions[end]:
-            continue
-        width = end - begin
-        inside = begin + (np.arange(min(_SAMPLES, width)) + 0.5) * (width / min(_SAMPLES, width))
+
+    def change(begin: int, end: int, inside: FloatArray) -> float:
         delta = np.stack([approaches(int(index)) for index in inside])
         deepest = float(np.max(delta))
         first, last = (potential(law, conditions[at], bearing, deepest)(delta) for at in (begin, end))
-        total += float(np.sum(last - first)) / delta.shape[0]
+        return float(np.sum(last - first)) / inside.size
+
+    return 0.0 if isinstance(law, DryLaw) else over_parts(conditions, change)
+
+
+def over_parts(conditions: Sequence[Any], change: Callable[[int, int, FloatArray], float]) -> float:
+    """Sum what changes of the conditions do over the parts of a run.
+
+    Parameters
+    ----------
+    conditions : sequence
+        Conditions at all samples of the run.
+    change : callable
+        What one of them does [J], by its first and last sample, and samples inside of it.
+    """
+    count, total = len(conditions), 0.0
+    if len(set(conditions)) == 1:
+        return 0.0
+    ends = np.unique(np.linspace(0, count - 1, min(_PARTS, count - 1) + 1).astype(int)).tolist()
+    for begin, end in pairwise(ends):
+        if conditions[begin] != conditions[end]:
+            width, samples = end - begin, min(_SAMPLES, end - begin)
+            total += change(begin, end, begin + (np.arange(samples) + 0.5) * (width / samples))
     return total
 
 

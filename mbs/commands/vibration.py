@@ -100,11 +100,12 @@ def run_vibration(arguments: argparse.Namespace, keys: str, family: Family) -> t
     found = ring_vibration(name, keys or _PERFECT, axial, mass, **given)
     middle = {key: given[key][len(given[key]) // 2 :][:1] for key in ("temperatures", "clearances")}
     perfect = ring_vibration(name, _PERFECT, axial, mass, **{**given, **middle})
+    several = len(given["temperatures"]) * len(given["clearances"]) > 1
     plays = [f"{MICROMETRE.text(play)}" for play in given["clearances"] if play is not None]
     lines = [
         f"{text}: {SPEED * 30.0 / math.pi:.0f} rpm, {axial:g} N along the axis, rigid outer ring of {1e3 * mass:g} g "
         "(ISO 15242; bending of the ring, cage, seals and dirt are not there)",
-        f"radial velocity of the outer ring, rms, um/s, least to largest over {oil} at "
+        f"radial velocity of the outer ring, rms, um/s, {'least to largest over ' if several else ''}{oil} at "
         + ", ".join(TEMPERATURE.text(kelvin) for kelvin in given["temperatures"])
         + (f" and clearances of {', '.join(plays)}" if plays else ""),
         f"  {'':26s}" + "".join(f"{f'{low:.0f} to {high:.0f} Hz':>22s}" for low, high in BANDS),
@@ -121,8 +122,9 @@ def run_vibration(arguments: argparse.Namespace, keys: str, family: Family) -> t
 
 def _row(words: str, found: RingVibration, law: str) -> str:
     """Bands of a law in a line."""
-    low, high = (1e6 * found.band(law)).tolist()
-    return f"  {words:26s}" + "".join(f"{f'{_speed(a)} to {_speed(b)}':>22s}" for a, b in zip(low, high, strict=True))
+    bands = [[_speed(value) for value in band] for band in (1e6 * found.band(law)).T]
+    texts = [low if low == high else f"{low} to {high}" for low, high in bands]
+    return f"  {words:26s}" + "".join(f"{text:>22s}" for text in texts)
 
 
 def _speed(value: float) -> str:

@@ -103,11 +103,15 @@ class PadForce(LocatingForce):
     def condensed(self, loads, conditions, relaxes):
         return None  # without films
 
-    def work(self, speeds, last):
-        return 0.0
+    def works(self, speeds, last):
+        return 0.0, 0.0
 
-    def stored(self):
-        return float(self._load @ self._load) / (2.0 * STIFFNESS)
+    @property
+    def last_rows(self):
+        return self._load[:, None]
+
+    def stored(self, rows):
+        return float(np.sum(rows**2)) / (2.0 * STIFFNESS)
 
 
 @dataclass(frozen=True)

@@ -38,7 +38,7 @@ def bearing(name, profile):
 def left(force, loads):
     """Largest force left on a roller beside the largest that acts on it [N], by the sum over its contacts."""
     worst = 0.0
-    for index, row in enumerate(force.last_rollers):
+    for index, row in enumerate(force.last_rows):
         v, d, f = row[9:12], row[12:15], np.array([0.0, *loads])
         arm, size = abs(force.shape.levers[-1]), np.abs(f).sum()
         for sign, moved, normal, c in (

@@ -102,7 +102,7 @@ def test_kernel_is_that_of_python(exported, name, mirrored):
                 assert np.max(np.abs(found[0])) < 1e-6
                 continue
             loaded += 1
-            partly += np.any(at.last_rollers[:, 3] == 0.0)
+            partly += np.any(at.last_rows[:, 3] == 0.0)
             scales = (ARM, np.outer(ARM, ARM), np.outer(ARM, ARM))
             each = zip((found[0], found[1:7], found[7:]), wanted, scales, ONE_CONTACT, strict=True)
             for rows, matrix, size, least in each:

@@ -51,7 +51,7 @@ def speed_forces(force, ai, ao, speed):
 
 def by_hand(force, balls, speed, s):
     """Z(s) (6, 6) of all balls at one frequency: complex stiffness of both contacts, the ball's place eliminated."""
-    rows, shape, law, found = force.last_balls, force.shape, force.law, np.zeros((6, 6), dtype=np.complex128)
+    rows, shape, law, found = force.last_rows, force.shape, force.law, np.zeros((6, 6), dtype=np.complex128)
     springs = [response.springs(rows[:, 10 + side]) for side, response in enumerate(law.responses)]
     for j, (row, angle) in enumerate(zip(rows, balls.angle, strict=True)):
         parts = []

@@ -89,7 +89,7 @@ def test_small_motions_know_the_rows():
     pose = np.array([1e-6, 2e-6, -1e-6, 0.0, 1e-4, -1e-4])
     _, stiffness, _ = both(pose)
     moved = both.by_pose(both.angles)
-    springs = both.last_balls[:, 2:6].reshape(-1, 2, 2)
+    springs = both.last_rows[:, 2:6].reshape(-1, 2, 2)
     np.testing.assert_allclose(np.einsum("zai,zab,zbj->ij", moved, springs, moved), stiffness, rtol=1e-12, atol=1e-6)
 
 

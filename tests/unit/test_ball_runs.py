@@ -36,7 +36,7 @@ def drive(law):
 
 def states_of(element):
     """States before the first step."""
-    return LocatingStates(0.0, np.zeros((element.force.geometry.balls, LAST)), 0.0, 0.0, 0.0)
+    return LocatingStates(0.0, np.zeros((element.force.geometry.balls, LAST)), 0.0, 0.0, 0.0, np.zeros((1, 1)))
 
 
 def answers(block, speeds, step, angle, place=PLACE, rate=RATE):

@@ -9,7 +9,7 @@ import pickle
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
+from scipy.integrate import quad, solve_ivp
 from scipy.interpolate import CubicHermiteSpline
 
 from ehdmaps.kernel.library import function
@@ -30,7 +30,7 @@ from mbs.bearings.locating.film_memory import (
     Springs,
     no_memory,
 )  # fmt: skip
-from mbs.bearings.locating.normal_law import LawData, NormalLaw, contacts_at, law_data, load_approach
+from mbs.bearings.locating.normal_law import LawData, NormalLaw, contacts_at, energies, law_data, load_approach
 
 ROWS, CENTRE, SCALE, FIRST, STEP, HERTZ = 23, -2e-7, 1.3e-7, -4.0, 0.4, 1.1e10
 APPROACHES = CENTRE + SCALE * np.sinh(np.linspace(FIRST - 1.5, FIRST + STEP * (ROWS - 1) + 1.5, 401))
@@ -115,6 +115,22 @@ def test_springs_over_a_step_solve_their_equation(part):
             )  # fmt: skip
             wanted = ended.y[:, -1]
         assert held[0, side, PULL] + held[0, side, SPRING] * moved == pytest.approx(wanted.sum(), rel=1e-9, abs=1e-9)
+
+
+def test_energies_are_the_integrals_of_loads():
+    """Against adaptive quadrature over the approach, within the table and beyond both ends: to what that asks, 1e-9."""
+    dry, begin = NormalLaw(HERTZ), CENTRE - 5.0 * SCALE * math.sinh(-FIRST)
+    for law, ends in ((film(), APPROACHES[::50]), (dry, np.array([-1e-7, 2e-6]))):
+        first = begin if law is not dry else 0.0
+        wanted = [
+            quad(lambda at, law=law: contacts_at(law, np.array([at]))[0, 0], first, end, epsabs=0.0, epsrel=1e-10,
+                 points=[CENTRE] if first < CENTRE < end else None, limit=200)[0] if end > 0.0 or law is not dry else 0.0
+            for end in ends
+        ]  # fmt: skip
+        found = energies(law, ends) - energies(law, np.array([first]))
+        np.testing.assert_allclose(found, wanted, rtol=1e-7, atol=1e-9 * max(wanted))
+    # a line of the law F = C g^(10/9)
+    assert energies(dry, np.array([3e-6]), 10.0 / 9.0)[0] == pytest.approx(HERTZ * 9.0 / 19.0 * 3e-6 ** (19.0 / 9.0))
 
 
 def moved_on(place, after, memory):

@@ -119,8 +119,6 @@ def test_films_stiffen_a_pair_that_displacement_preloads(law):
     assert wet.law.count("films with memory, ribs dry") == 1
     heat = "inlet heat, " if law == "table" else ""
     assert f"FVA3, {heat}flooded, smooth surfaces" in wet.law
-    element = wet.system.elements[0].element
-    assert element.powers(None, *[np.zeros(6)] * 3, wet.operation) is None
 
 
 def test_what_has_no_films_is_said():
@@ -213,7 +211,7 @@ def test_films_of_slow_motion_say_from_where_they_are_wrong(emap, films):
 
 def by_hand(force, cage_angle, s):
     """Z(s) (6, 6) by the complex stiffness of each slice, with the place of each roller eliminated at s."""
-    shape, rows, found = force.shape, force.last_rollers, np.zeros((6, 6), dtype=np.complex128)
+    shape, rows, found = force.shape, force.last_rows, np.zeros((6, 6), dtype=np.complex128)
     for angle, row in zip(force.angles + cage_angle, rows, strict=True):
         place, ring, parts = row[9:12], row[12:15], np.zeros((2, 3, 3), dtype=np.complex128)
         sides = ((shape.cone, ring - place, "inner", 0), (shape.cup, place, "outer", 1))

@@ -90,8 +90,8 @@ def test_what_ring_and_speed_do_is_stored(force) -> None:
     last, forces, works, stored = np.zeros((force.angles.size, LAST)), [], [], []
     for pose in path:
         forces.append(force(pose, inner_speed=speeds[0])[0])
-        works.append(force.work(speeds, last))
-        stored.append(force.stored())
+        works.append(force.works(speeds, last)[0])
+        stored.append(force.stored(force.last_rows))
     ring = -np.sum(0.5 * (np.array(forces[1:]) + forces[:-1]) * np.diff(path, axis=0), axis=1)
     gained, by_speed = stored[-1] - stored[0], float(np.sum(works[1:]))
     assert abs(by_speed) > 1e-2 * abs(gained)

@@ -128,7 +128,7 @@ def test_balls_beyond_the_grooves_are_free(name, speed):
     force, far = force_of(geometry), geometry.radial_distance
     forces = [force(np.array([0.0, -part * far, 0.0, 0.0, 0.0, 0.0]), inner_speed=speed)[0] for part in (1.002, 1.006)]
     behind = np.cos(force.angles) > 0.999
-    assert np.all(force.last_balls[behind, 10] == 0.0) and np.all(force.last_balls[~behind, 10].max() > 0.0)
+    assert np.all(force.last_rows[behind, 10] == 0.0) and np.all(force.last_rows[~behind, 10].max() > 0.0)
     still = force(np.array([0.0, -1.006 * far, 0.0, 0.0, 0.0, 0.0]))[0]
     assert forces[1][1] > forces[0][1] > 0.0
     assert forces[1][1] == pytest.approx(still[1], rel=0.03)

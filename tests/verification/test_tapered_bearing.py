@@ -313,7 +313,7 @@ def test_slow_motion_is_that_of_all_contacts(geometry) -> None:
     force = TaperedForce(geometry, 10.0, 1e-5, slices=5)
     pose = POSE + np.array([force.ribs[0].play, 0.0, 0.0, 0.0, 0.0, 0.0])
     _, stiffness, damping = force(pose, cage_angle=0.3, inner_speed=700.0)
-    shape, rows, slow = force.shape, force.last_rollers, np.zeros((2, 6, 6))
+    shape, rows, slow = force.shape, force.last_rows, np.zeros((2, 6, 6))
     lines = [np.column_stack([np.tile(e, (5, 1)), shape.levers]) for e in (shape.cone, shape.cup)]
     ribs, soft = np.column_stack([shape.ribs.normals, shape.ribs.levers]), 2e-14 * 2.0 * force.dry_law.inner.coefficient
     for row, moves in zip(rows, by_pose(force, 0.3), strict=True):

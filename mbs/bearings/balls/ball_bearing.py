@@ -44,12 +44,12 @@ from mbs.bearings.balls.ball_data import (
     DriveData,
     ShapeData,
 )
-from mbs.bearings.balls.ball_speed import Drive, ball_loads, dry_energy, mean_speed, speed_work
+from mbs.bearings.balls.ball_speed import Drive, ball_loads, ball_works, mean_speed
 from mbs.bearings.balls.laws import BallLaw
 from mbs.bearings.balls.response import SHORTER
 from mbs.bearings.locating.film_memory import springs_of
 from mbs.bearings.locating.locating_force import Loads, LocatingForce, directions, later
-from mbs.bearings.locating.normal_law import law_data, load_approach
+from mbs.bearings.locating.normal_law import energies, law_data, load_approach
 from mbs.model.findings import CARRIES
 
 if TYPE_CHECKING:
@@ -268,8 +268,8 @@ class BallForce(LocatingForce):
         self._starts[:] = 0.0
 
     @property
-    def last_balls(self) -> FloatArray:
-        """Rows of the balls after the last call, shape (Z, COLUMNS), see `mbs.bearings.balls.ball_data`.
+    def last_rows(self) -> FloatArray:
+        """See `LocatingForce.last_rows`, shape (Z, COLUMNS), see `mbs.bearings.balls.ball_data`.
 
         Contact angles are there after `balls` alone.
         """
@@ -280,13 +280,14 @@ class BallForce(LocatingForce):
         """See `LocatingForce.last_loads`."""
         return self._balls[:, 10:12].T
 
-    def work(self, speeds: tuple[float, float], last: FloatArray) -> float:
-        """See `LocatingForce.work`; `last` has centres [m] and forces [N], axial and radial."""
-        return speed_work(self._balls, self._data.shape, last, self._data.given("added"))
+    def works(self, speeds: tuple[float, float], last: FloatArray) -> tuple[float, float]:
+        """See `LocatingForce.works`; `last` as of `ball_works`."""
+        return ball_works(self._balls, self._data.shape, last, self._data.given("added"))
 
-    def stored(self) -> float:
+    def stored(self, rows: FloatArray) -> float:
         """See `LocatingForce.stored`."""
-        return dry_energy(self._balls)
+        approaches = rows[:, 14:16].T
+        return sum(float(np.sum(energies(*one))) for one in zip(self.law.sides, approaches, strict=True))
 
     def drive_at(
         self,
@@ -307,7 +308,7 @@ class BallForce(LocatingForce):
         return self.drive._replace(inner=float(inner_speed), outer=float(outer_speed), cage=cage)
 
     def drive_of(self, rows: FloatArray, conditions: dict[str, Any]) -> Drive:
-        """Speeds and masses of balls by their rows, see `last_balls`: one of four contacts has a part of its mass.
+        """Speeds and masses of balls by their rows, see `last_rows`: one of four contacts has a part of its mass.
 
         Parameters
         ----------

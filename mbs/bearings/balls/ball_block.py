@@ -8,7 +8,7 @@ import numpy as np
 
 from ehdmaps.kernel.record import numbers
 from mbs.bearings.balls.ball_data import COLUMNS, START, BallShape
-from mbs.bearings.balls.ball_speed import Drive, dry_energy
+from mbs.bearings.balls.ball_speed import Drive
 from mbs.bearings.balls.laws import NODES
 from mbs.bearings.locating.locating_block import LocatingBlock, PairBlock, kind_of
 
@@ -74,10 +74,6 @@ class BallBlock(LocatingBlock):
             "sine": sine,
             "ways": ways,
         }
-
-    def stored(self, b: int) -> float:
-        """See `LocatingBlock.stored`."""
-        return dry_energy(self.arrays["rows"][b, : self.size(b)])
 
 
 BALLS = kind_of(BallBlock)

@@ -12,11 +12,11 @@ from mbs.bearings.locating.film_memory import rows_of
 from mbs.bearings.locating.locating_force import BY_RATES
 from mbs.bearings.locating.normal_law import LawData
 
-COLUMNS = 26
+COLUMNS = 28
 """Numbers that are kept of a ball: `ehd_ball_found`. Force on the ball (2), stiffness (4) and damping (4) of the pair,
 loads of the inner and the outer contact [N], contact angles, approaches [m], directions e_i (2) and e_o (2), places of
 the contacts on their tables; speed around the axis [rad/s], centrifugal load, tractions at the outer and at the inner
-raceway [N]."""
+raceway [N]; what the memory of films adds to the loads at rest [N]."""
 
 START = 10
 """Numbers by which a ball begins: `ehd_ball_start`, its centre, that of the inner groove there, S (4), and what

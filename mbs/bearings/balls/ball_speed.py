@@ -186,14 +186,15 @@ def mean_speed(balls: FloatArray, idle: float) -> float:
 
 
 @functools.cache
-def _work() -> Callable[..., float]:
-    """Work of the loads by speed, in C."""
-    place = ctypes.c_void_p
-    return function("ehd_ball_speed_work", ctypes.c_int64, *4 * (place,), result=ctypes.c_double)
+def _works() -> Callable[..., None]:
+    """Works of a step, in C."""
+    return function("ehd_ball_works", ctypes.c_int64, *5 * (ctypes.c_void_p,), result=None)
 
 
-def speed_work(balls: FloatArray, shape: ctypes.Structure, last: FloatArray, added: FloatArray | None = None) -> float:
-    """Work of the centrifugal loads and tractions on the balls since the last call [J], by the trapezoidal rule.
+def ball_works(
+    balls: FloatArray, shape: ctypes.Structure, last: FloatArray, added: FloatArray | None = None
+) -> tuple[float, float]:
+    """Works since the last call [J], see `LocatingForce.works`, by the trapezoidal rule.
 
     Parameters
     ----------
@@ -202,12 +203,15 @@ def speed_work(balls: FloatArray, shape: ctypes.Structure, last: FloatArray, add
     shape : Structure
         Lengths of the bearing, in C.
     last : array (Z, LAST)
-        Centres from both grooves [m] and forces [N] of the last call, axial and radial; written.
+        Centres from both grooves [m] and forces [N] of the last call, axial and radial; approaches [m] and what memory
+        adds to the loads [N]; written.
     added : array (Z, 2, 2), optional
         What deviations add to the contacts, see `mbs.bearings.deviating.tables`.
     """
-    more = None if added is None else added.ctypes.data
-    return _work()(balls.shape[0], balls.ctypes.data, ctypes.addressof(shape), more, last.ctypes.data)
+    more, found = None if added is None else added.ctypes.data, np.empty(2)
+    places = balls.ctypes.data, ctypes.addressof(shape), more, last.ctypes.data, found.ctypes.data
+    _works()(balls.shape[0], *places)
+    return float(found[0]), float(found[1])
 
 
 def inner_share(drive: Drive, loads: Any) -> tuple[Any, Any]:
@@ -270,14 +274,3 @@ def speed_slopes(along: Any, length: Any, drive: Drive, loads: Any, stiffness: F
             one_o[..., :, None] * at_outer[..., None, :] - along_d + more * by_v[..., None, :],
         ]
     return found[0], found[1], found[2], found[3]
-
-
-def dry_energy(balls: FloatArray) -> float:
-    """Energy of dry contacts [J], 2/5 F times the approach of each.
-
-    Parameters
-    ----------
-    balls : array (Z, COLUMNS)
-        Rows of all balls.
-    """
-    return 0.4 * float((balls[:, 10:12] * balls[:, 14:16].clip(min=0.0)).sum())

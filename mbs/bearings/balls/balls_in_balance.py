@@ -56,7 +56,7 @@ def ball_relaxation(force: BallForce, balls: BallLoads, conditions: dict[str, An
     conditions : dict
         Angle of the cage and speeds at that call.
     """
-    law, shape, found = force.law, force.shape, force.last_balls
+    law, shape, found = force.law, force.shape, force.last_rows
     rows, times = np.zeros((balls.angle.size, 2 * TIMES.size, 6)), np.ones((balls.angle.size, 2 * TIMES.size))
     on = found[:, 10] > 0.0  # others do nothing
     if law.responses and np.any(on):
@@ -80,7 +80,7 @@ def balls_in_balance(force: BallForce, balls: BallLoads, conditions: dict[str, A
     relaxes : bool
         Whether films have a memory.
     """
-    law, shape, rows = force.law, force.shape, force.last_balls
+    law, shape, rows = force.law, force.shape, force.last_rows
     on = rows[:, 10] > _LEAST * rows[:, 10].max()
     if not law.responses or not np.any(on):
         return None

@@ -125,6 +125,12 @@ class FilmsInTime:
         """
         return cls(no_memory(force.contacts, len(force.shorter)))._gone_on(force)
 
+    @property
+    def stored(self) -> float:
+        """Energy of the springs of all contacts [J]."""
+        force, stiffness = self.memory[:, :, HEAD + FORCE :: EACH], self.memory[:, :, HEAD + STIFFNESS :: EACH]
+        return float(np.sum(0.5 * force**2 / np.where(stiffness > 0.0, stiffness, np.inf)))
+
     def held(self, step: float, shorter: Sequence[float]) -> FloatArray:
         """Memory with what contacts hold over a step, as `LocatingForce.held` takes it.
 

@@ -42,8 +42,9 @@ class PairBlock(Record):
         Angle of its first rolling element [rad], cage angle by that of the system, axial offset [m].
     powers : array (count, 2)
         What it dissipates, and what the turning cage brings in [W].
-    last, times, works : array (count, longest, LAST), (count,), (count,)
-        What `LocatingForce.work` keeps of the last step, its time [s], and its work by that time [W].
+    last, times, works, spent : array (count, longest, LAST), (count,), (count,), (count,)
+        What `LocatingForce.works` keeps of the last step, its time [s], the power of speed over it [W], and what films
+        with memory took up [J].
     memories, memory : array (count,), of int, (numbers,)
         First number of the memory of a bearing, < 0 without one; memory of the contacts of all bearings,
         (Z, 2, rows, n) each, see `mbs.bearings.locating.film_memory`.
@@ -58,7 +59,7 @@ class PairBlock(Record):
     _fields_ = (
         *((name, ctypes.c_int64) for name in ("count", "longest")),
         *((name, integers) for name in ("firsts", "places", "films_of", "counts", "slices")),
-        *((name, numbers) for name in ("starts", "turns", "offsets", "powers", "last", "times", "works")),
+        *((name, numbers) for name in ("starts", "turns", "offsets", "powers", "last", "times", "works", "spent")),
         ("memories", integers),
         *((name, numbers) for name in ("memory", "clock")),
         ("films", ctypes.POINTER(FilmData)),
@@ -66,7 +67,7 @@ class PairBlock(Record):
     )
     shapes: ClassVar = {
         **dict.fromkeys(("firsts", "places", "films_of", "counts", "slices", "memories"), ("count",)),
-        **dict.fromkeys(("starts", "turns", "offsets", "times", "works"), ("count",)),
+        **dict.fromkeys(("starts", "turns", "offsets", "times", "works", "spent"), ("count",)),
         "powers": ("count", 2),
         "last": ("count", "longest", LAST),
         "clock": (2,),
@@ -87,6 +88,8 @@ class LocatingBlock:
         The struct of the kind, and how C calls it.
     nodes : int
         Nodes of a law over the approach.
+    last_rows : str
+        Name of the array with the numbers of all elements at the last answer.
     elements : list of LocatingElement
         The bearings.
     arrays : dict of array
@@ -98,6 +101,7 @@ class LocatingBlock:
     record: ClassVar[type[PairBlock]]
     name: ClassVar[str]
     nodes: ClassVar[int]
+    last_rows: ClassVar[str] = "rows"
 
     def __init__(self, members: Sequence[Member]) -> None:
         self.elements: list[LocatingElement] = [member.element for member in members]
@@ -141,10 +145,6 @@ class LocatingBlock:
         """Numbers of all bearings, a row each."""
         return np.array(values, dtype=np.float64).reshape(len(self.elements), *columns)
 
-    def stored(self, b: int) -> float:
-        """Energy of the dry contacts of a bearing at the last answer [J]."""
-        raise NotImplementedError
-
     def _memory_shape(self, b: int) -> tuple[int, ...]:
         """Lengths of the memory of the contacts of a bearing."""
         force = self.elements[b].force
@@ -180,7 +180,8 @@ class LocatingBlock:
                 last=arrays["last"][b, : self.size(b)].copy(),
                 dissipated=float(arrays["powers"][b, 0]),
                 driven=float(arrays["powers"][b, 1] + arrays["works"][b]),
-                stored=self.stored(b),
+                spent=float(arrays["spent"][b]),
+                rows=arrays[self.last_rows][b, : self.size(b)].copy(),
                 films=FilmsInTime(self._memory(b).copy()) if one.relaxes else None,
             )
             for b, one in enumerate(self.elements)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
@@ -19,6 +19,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, EhdmapsError
 from ehdmaps.units import RPM
+from mbs.bearings.contact_energy import over_parts
 from mbs.bearings.locating.film_memory import FilmsInTime
 from mbs.bearings.locating.locating_force import LAST, Settled
 from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers, check_apart
@@ -33,6 +34,9 @@ if TYPE_CHECKING:
 HARMONICS = 3
 """Multiples of the passing frequency of the rolling elements that are worth following."""
 
+SAMPLES = 4
+"""Samples in each part of a run of which it is known what changes of the speed brought into films."""
+
 MOST_SPEEDS = 64
 """Speeds whose films are kept."""
 
@@ -45,11 +49,13 @@ class LocatingStates(NamedTuple):
     time : float
         End of the step [s].
     last : array, shape (Z, LAST)
-        What `LocatingForce.work` keeps of it.
+        What `LocatingForce.works` keeps of it.
     dissipated, driven : float
         What contacts take up, and what cage and speed bring in [W].
-    stored : float
-        Energy of the contacts, which are dry [J].
+    spent : float
+        What films with memory took up over the step [J].
+    rows : array, shape (Z, ...)
+        Numbers of the elements, see `LocatingForce.last_rows`.
     films : FilmsInTime or None
         Films with memory; None where none are known.
     """
@@ -58,7 +64,8 @@ class LocatingStates(NamedTuple):
     last: FloatArray
     dissipated: float
     driven: float
-    stored: float
+    spent: float
+    rows: FloatArray
     films: Any = None
 
 
@@ -330,11 +337,13 @@ class LocatingElement(OnRings):
         try:
             with self.deviating(operation):
                 answer = self.evaluate(displacement, velocity, operation)
-                work = force.work((conditions["inner_speed"], conditions["outer_speed"]), last)
+                work, taken = force.works((conditions["inner_speed"], conditions["outer_speed"]), last)
         finally:
             force.held = None
+        spent = 0.0
         if self.relaxes:
-            films = FilmsInTime.at_rest(force) if films is None else films.after(step, force)
+            before, films = films, FilmsInTime.at_rest(force) if films is None else films.after(step, force)
+            spent = taken - films.stored + before.stored if before is not None and step > 0.0 else 0.0
         slowed = answer.damping @ velocity
         at_rest, dissipated, brought = answer.force + slowed, float(velocity @ slowed), 0.0
         if self.deviation_data is not None:
@@ -348,19 +357,38 @@ class LocatingElement(OnRings):
             last=last,
             dissipated=dissipated,
             driven=turning + brought + (work / step if step > 0.0 else 0.0),
-            stored=force.stored(),
+            spent=spent,
+            rows=force.last_rows.copy(),
             films=films,
         )
 
     def powers(
         self, states: Any, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
     ) -> Powers | None:
-        """Power that contacts dissipate, and that cage and speed bring in; None with films, see `Element.powers`."""
-        return None if self.films is not None else Powers(states.dissipated, states.driven)
+        """Power that contacts dissipate, and that cage, deviations and speed bring in, see `Element.powers`."""
+        return Powers(states.dissipated, states.driven, states.spent)
 
     def stored(self, states: Any, displacement: FloatArray, operation: Operation) -> float | None:
-        """Energy of its dry contacts [J]; None with films, see `Element.stored`."""
-        return None if self.films is not None else float(states.stored)
+        """Energy of its contacts at rest, and of the springs of films with memory [J], see `Element.stored`."""
+        springs = 0.0 if states.films is None else float(states.films.stored)
+        return float(self.force_at(operation).stored(states.rows)) + springs
+
+    def brought_by_speed(self, displacements: FloatArray, operations: Sequence[Operation]) -> float:
+        """Energy that changes of the speed brought into its films, see `mbs.bearings.contact_energy`."""
+        if not self.varies:
+            return 0.0
+
+        def change(begin: int, end: int, inside: FloatArray) -> float:
+            low, high = (self.force_at(operations[at]) for at in (begin, end))
+            speed, total = operations[(begin + end) // 2].speed, 0.0
+            chosen = inside[:: -(-inside.size // SAMPLES)].astype(int).tolist()
+            for index in chosen:
+                at = self.settled(displacements[index], operations[index]._replace(speed=speed))
+                rows = at.force.last_rows
+                total += high.stored(rows) - low.stored(rows)
+            return total / len(chosen)
+
+        return over_parts([one.speed for one in operations], change)
 
 
 def turned_by(pose: FloatArray, force: FloatArray) -> float:

@@ -25,8 +25,8 @@ from mbs.model.findings import CARRIES, Cause, Finding
 if TYPE_CHECKING:
     from mbs.life import ReferenceLife
 
-LAST = 8
-"""Numbers that `LocatingForce.work` keeps of a rolling element: places, and then the loads on them."""
+LAST = 16
+"""Numbers that `LocatingForce.works` keeps of a rolling element: `EHD_PAIR_LAST`."""
 
 BY_RATES = 8
 """Numbers of the effect that rates of deviations have, `EHD_PAIR_BY_RATES`: force on the inner ring (6,) [N], [N m];
@@ -346,8 +346,13 @@ class LocatingForce:
         """Loads of the inner and the outer contacts after the last call, shape (2, Z) [N]."""
         raise NotImplementedError
 
-    def work(self, speeds: tuple[float, float], last: FloatArray) -> float:
-        """Work of centrifugal loads and gyroscopic moments on the elements since the last call [J].
+    @property
+    def last_rows(self) -> FloatArray:
+        """Numbers of all elements after the last call, (Z, ...)."""
+        raise NotImplementedError
+
+    def works(self, speeds: tuple[float, float], last: FloatArray) -> tuple[float, float]:
+        """Works since the last call [J]: of centrifugal loads and gyroscopic moments, and of what memory adds to loads.
 
         Parameters
         ----------
@@ -358,8 +363,14 @@ class LocatingForce:
         """
         raise NotImplementedError
 
-    def stored(self) -> float:
-        """Energy of its contacts after the last call, as if they were dry [J]."""
+    def stored(self, rows: FloatArray) -> float:
+        """Energy of its contacts at rest [J].
+
+        Parameters
+        ----------
+        rows : array (Z, ...)
+            Numbers of all elements, see `last_rows`.
+        """
         raise NotImplementedError
 
     def reach_of(self, load: FloatArray) -> Finding | None:

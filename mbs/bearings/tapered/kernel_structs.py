@@ -18,7 +18,7 @@ from mbs.bearings.locating.normal_law import LawData, NormalLaw
 RIB_NUMBERS = 6
 """Numbers of a rib, see `rib_rows`."""
 
-PLACE, RING, FIRST_RIB, FIRST_SHARE, ADDED, COLUMNS = slice(9, 12), slice(12, 15), 15, 19, slice(49, 51), 51
+PLACE, RING, FIRST_RIB, FIRST_SHARE, ADDED, COLUMNS = slice(9, 12), slice(12, 15), 15, 19, slice(49, 51), 55
 """Places of numbers that are kept of a roller, and how many there are: `ehd_taper_roller` in taper.h."""
 
 ANSWER = 78
@@ -139,13 +139,13 @@ class Functions(NamedTuple):
         Data, laws, pose, cage angle, loads, memory, rollers and answer; how many rollers carry, or what is wrong.
     go_on : callable
         Data, laws, springs, rollers, room for approaches of slices, memory.
-    speed_work : callable
-        How many rollers, rollers, loads and places of the last call; the work [J].
+    works : callable
+        Data, rollers, loads, what is kept of the last call, room for two works.
     """
 
     force: Callable[..., int]
     go_on: Callable[..., None]
-    speed_work: Callable[..., float]
+    works: Callable[..., None]
 
 
 @functools.cache
@@ -159,7 +159,7 @@ def functions() -> Functions:
     return Functions(
         function("ehd_taper_force", place, place, place, c_double, place, place, place, place),
         function("ehd_taper_go_on", *6 * (place,), result=None),
-        function("ehd_taper_speed_work", c_int64, place, place, place, result=c_double),
+        function("ehd_taper_works", *5 * (place,), result=None),
     )
 
 

@@ -62,7 +62,7 @@ def rollers_in_balance(
     relaxes : bool
         Whether films have a memory.
     """
-    rows = force.last_rollers
+    rows = force.last_rows
     on = rows[:, 3] + rows[:, 5] > 0.0
     if force.films.dry or not np.any(on):
         return None
@@ -97,7 +97,7 @@ def by_pose(force: TaperedForce, cage_angle: float) -> FloatArray:
 
 def _lines(force: TaperedForce, cage_angle: float, on: BoolArray) -> _Lines:
     """Slices of cone and cup, then ribs, of rollers that are on; dry lines have neither stiffness nor dampers."""
-    shape, films, ribs, rows = force.shape, force.films, force.shape.ribs, force.last_rollers[on]
+    shape, films, ribs, rows = force.shape, force.films, force.shape.ribs, force.last_rows[on]
     count, n = rows.shape[0], shape.levers.size
     feel, turning = np.zeros((count, 2 * n + ribs.levers.size, 6)), np.zeros((count, 6, 6))
     k, c, times = np.zeros((3, *feel.shape[:2]))

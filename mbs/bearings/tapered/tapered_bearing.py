@@ -46,7 +46,7 @@ from ehdmaps.physics.surface import iso_profile
 from mbs.bearings.laws import roller_coefficient
 from mbs.bearings.locating.film_memory import rows_of, springs_of
 from mbs.bearings.locating.locating_force import Loads, LocatingForce, directions, later
-from mbs.bearings.locating.normal_law import LawData, NormalLaw, contacts_at, law_data
+from mbs.bearings.locating.normal_law import LawData, NormalLaw, contacts_at, energies, law_data
 from mbs.bearings.tapered.kernel_structs import (
     ADDED,
     ANSWER,
@@ -284,8 +284,8 @@ class TaperedForce(LocatingForce):
         self._rollers[:] = 0.0
 
     @property
-    def last_rollers(self) -> FloatArray:
-        """Numbers of the rollers at the last call, (Z, `COLUMNS`), see `mbs.bearings.tapered.kernel_structs`."""
+    def last_rows(self) -> FloatArray:
+        """See `LocatingForce.last_rows`, (Z, `COLUMNS`), see `mbs.bearings.tapered.kernel_structs`."""
         return self._rollers
 
     @property
@@ -293,13 +293,23 @@ class TaperedForce(LocatingForce):
         """See `LocatingForce.last_loads`: of cone and cup."""
         return self._rollers[:, 3:5].T
 
-    def work(self, speeds: tuple[float, float], last: FloatArray) -> float:
-        """See `LocatingForce.work`; `last` has places, radial [m] and turned [rad], and loads."""
-        return place_work(self._rollers, self.speed_loads(*speeds), last)
+    def works(self, speeds: tuple[float, float], last: FloatArray) -> tuple[float, float]:
+        """See `LocatingForce.works`; `last` as of `ehd_taper_works`."""
+        given, found = np.array(self.speed_loads(*speeds)), np.empty(2)
+        places = self._rollers.ctypes.data, given.ctypes.data, last.ctypes.data, found.ctypes.data
+        functions().works(self._data.address, *places)
+        return float(found[0]), float(found[1])
 
-    def stored(self) -> float:
-        """See `LocatingForce.stored`."""
-        return dry_energy(self.dry_law.inner, self.shape, self._rollers)
+    def stored(self, rows: FloatArray) -> float:
+        """See `LocatingForce.stored`; with 2/5 of the load times the approach of each rib."""
+        shape, place, ring = self.shape, rows[:, PLACE], rows[:, RING]
+        ribs = rows[:, FIRST_RIB : FIRST_RIB + shape.ribs.laws.size]
+        total = 0.4 * float(np.sum(ribs ** (5.0 / 3.0) * shape.ribs.laws ** (-2.0 / 3.0)))
+        for side, (normal, moved) in enumerate(((shape.cone, ring - place), (shape.cup, place))):
+            approach = moved[:, :2] @ np.array(normal) + rows[:, ADDED][:, side]
+            depth = approach[:, None] + moved[:, 2:] * shape.levers - shape.profile
+            total += float(np.sum(energies(self.films.sides[side], depth, 10.0 / 9.0))) / shape.levers.size
+        return total
 
     def go_on(self, memory: FloatArray) -> None:
         """See `LocatingForce.go_on`."""
@@ -327,40 +337,3 @@ class TaperedForce(LocatingForce):
             self._rollers[:] = 0.0
             self._refuse(found, place, cage_angle)
         return self._out
-
-
-def place_work(rollers: FloatArray, loads: tuple[float, float], last: FloatArray) -> float:
-    """Work of the centrifugal loads and gyroscopic moments since the last call [J], by the trapezoidal rule.
-
-    Parameters
-    ----------
-    rollers : array (Z, COLUMNS)
-        Numbers of the rollers, see `mbs.bearings.tapered.kernel_structs`.
-    loads : (float, float)
-        Centrifugal load [N], and moment [N m].
-    last : array (Z, LAST)
-        Places of the last call, radial [m] and turned [rad], and its loads; written.
-    """
-    given = np.array(loads)
-    return functions().speed_work(rollers.shape[0], rollers.ctypes.data, given.ctypes.data, last.ctypes.data)
-
-
-def dry_energy(line: NormalLaw, shape: TaperedShape, rollers: FloatArray) -> float:
-    """Energy of dry contacts [J], 9/19 Q times the approach of each slice, and 2/5 of ribs.
-
-    Parameters
-    ----------
-    line, shape : NormalLaw, TaperedShape
-        Law of a dry line, lengths of the bearing.
-    rollers : array (Z, COLUMNS)
-        Numbers of the rollers, see `mbs.bearings.tapered.kernel_structs`.
-    """
-    place, ring = rollers[:, 9:12], rollers[:, 12:15]
-    count = shape.ribs.laws.size
-    ribs = rollers[:, FIRST_RIB : FIRST_RIB + count]
-    total = 0.4 * float(np.sum(ribs ** (5.0 / 3.0) * shape.ribs.laws ** (-2.0 / 3.0)))
-    for side, (normal, moved) in enumerate(((shape.cone, ring - place), (shape.cup, place))):
-        approach = moved[:, :2] @ np.array(normal) + rollers[:, ADDED][:, side]
-        depth = approach[:, None] + moved[:, 2:] * shape.levers - shape.profile
-        total += 9.0 / 19.0 * line.coefficient / shape.levers.size * float(np.sum(depth.clip(min=0.0) ** (19.0 / 9.0)))
-    return total

@@ -12,7 +12,6 @@ from mbs.bearings.locating.locating_block import LocatingBlock, PairBlock, kind_
 from mbs.bearings.locating.locating_force import FASTEST
 from mbs.bearings.tapered.kernel_structs import COLUMNS, TaperedData, data_of, functions
 from mbs.bearings.tapered.line_film import NODES
-from mbs.bearings.tapered.tapered_bearing import dry_energy
 
 
 class Tapered(PairBlock):
@@ -53,7 +52,7 @@ class TaperedBlock(LocatingBlock):
         Bearings, each a `LocatingElement` with a `TaperedForce`.
     """
 
-    record, name, nodes = Tapered, "ehd_taper_block", NODES
+    record, name, nodes, last_rows = Tapered, "ehd_taper_block", NODES, "rollers"
 
     def own(self) -> dict[str, Any]:
         """See `LocatingBlock.own`."""
@@ -68,11 +67,6 @@ class TaperedBlock(LocatingBlock):
             "loads": self.rows([one.force.speed_loads(*e[:2]) for one, e in zip(elements, spins, strict=True)], 2),
             "approaches": np.zeros(max((one.force.slices for one in elements), default=0)),
         }
-
-    def stored(self, b: int) -> float:
-        """See `LocatingBlock.stored`."""
-        force = self.elements[b].force
-        return dry_energy(force.dry_law.inner, force.shape, self.arrays["rollers"][b, : self.size(b)])
 
 
 TAPERED = kind_of(TaperedBlock)

@@ -48,7 +48,7 @@ typedef struct ehd_roller {
  * by what Newton's method leaves, 1e-13 of the load, 1e-11 of stiffness and damping. */
 typedef struct ehd_rollers {
     ehd_roller roller[EHD_ROLLERS];
-    double own[EHD_ROLLERS][51]; /* what the next call starts from */
+    double own[EHD_ROLLERS][55]; /* what the next call starts from */
 #if EHD_MEMORY
     double held[EHD_ROLLERS][2][8][EHD_SLICES]; /* what the films of the slices of cone and cup hold over a step */
 #endif

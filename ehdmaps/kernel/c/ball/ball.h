@@ -51,6 +51,7 @@ typedef struct ehd_ball_found {
     double speed;                   /* around the axis [rad/s] */
     double centrifugal, traction;   /* F_c, and the traction at the outer raceway [N] */
     double inner_traction;          /* that at the inner one [N] */
+    double held[2];                 /* what the memory of films adds to the loads at rest [N] */
 } ehd_ball_found;
 
 /* A bearing at a time. */

@@ -53,6 +53,7 @@ typedef struct ball_state {
     double x, r, fx, fr, size;             /* v; force that is left; sum of the sizes of its parts [N] */
     double m00, m01, m10, m11;             /* minus its derivative by the place [N/m] */
     double qi, qo, ki, ko, at_i, at_o;     /* loads, stiffness, places on tables */
+    double held_i, held_o;                 /* parts of the loads that memory adds [N] */
     double ix, ir, ox, orr;                /* e_i and e_o */
     double distance, reach;                /* of v from both groove centres [m] */
     double speed, centrifugal, traction;   /* around the axis [rad/s], F_c and T = t k [N] */
@@ -200,6 +201,8 @@ EHD_INLINE ball_state ball_state_at(const ball_given *of, double x, double r) {
     s.ko = ko;
     s.at_i = inner.place;
     s.at_o = outer.place;
+    s.held_i = inner.held;
+    s.held_o = outer.held;
     s.ix = ix;
     s.ir = ir;
     s.ox = ox;
@@ -422,6 +425,8 @@ EHD_INLINE void ball_answer(const ball_given *of, const ball_state *s, ehd_ball_
     out->centrifugal = s->centrifugal;
     out->traction = (1.0 - s->share) * s->traction;
     out->inner_traction = inner_traction;
+    out->held[0] = s->held_i;
+    out->held[1] = s->held_o;
     start->added[0] = of->added ? of->added[0] : 0.0;
     start->added[1] = of->added ? of->added[2] : 0.0;
     if (of->added) of->by_rates[3] = qi * of->added[1] + s->qo * of->added[3];

@@ -84,65 +84,70 @@ int ehd_ball_block_answer(void *data, const ehd_moment *at, const double *motion
     return EHD_FOUND;
 }
 
-/* Bring the memory of all contacts to the end of the step over which they held. found: balls in balance at that end. */
-void ehd_ball_go_on(int64_t balls, const ehd_pair_law law[2], const ehd_pair_springs *springs,
-                    const ehd_ball_found *found, double *memory) {
+/* Bring the memory of all contacts to the end of the step over which they held; by how much the energy of their springs
+ * rises [J]. found: balls in balance at that end. */
+double ehd_ball_go_on(int64_t balls, const ehd_pair_law law[2], const ehd_pair_springs *springs,
+                      const ehd_ball_found *found, double *memory) {
+    double rise = 0.0;
     for (int64_t j = 0; j < balls; j++)
         for (int side = 0; side < 2; side++, memory += EHD_BALL_MEMORY)
-            pair_go_on(law + side, springs, EHD_BALL_SPRINGS, side, 1, found[j].approach + side, memory);
+            rise += pair_go_on(law + side, springs, EHD_BALL_SPRINGS, side, 1, found[j].approach + side, memory);
+    return rise;
 }
 
-/* Bring contacts with memory to the end of the step that was made. */
+/* Works since the last call [J], by the trapezoidal rule: of the centrifugal loads and tractions on balls, and of what memory
+ * adds to the loads of contacts; works (2,), written. added: of ehd_ball_data; last (balls, EHD_PAIR_LAST): centres v,
+ * -(d - v) [m], and the forces then on each [N]; approaches [m] and what is added to the loads [N]; written. Traction at the
+ * inner raceway is a force on the ring, too, whose work is counted there: what is left of it goes with d - v. */
+void ehd_ball_works(int64_t balls, const ehd_ball_found *found, const ehd_ball_shape *shape, const double *added,
+                    double *last, double *works) {
+    works[0] = works[1] = 0.0;
+    for (int64_t j = 0; j < balls; j++, last += EHD_PAIR_LAST) {
+        const ehd_ball_found *of = &found[j];
+        const double inner = added ? added[4 * j] : 0.0, outer = added ? added[4 * j + 2] : 0.0;
+        const double reach = shape->outer_arm + of->approach[1] - outer, back = -(shape->inner_arm + of->approach[0] - inner);
+        const double now[12] = {reach * of->outer[0],
+                                reach * of->outer[1],
+                                back * of->inner[0],
+                                back * of->inner[1],
+                                -of->traction * of->outer[1],
+                                of->centrifugal + of->traction * of->outer[0],
+                                of->inner_traction * of->inner[1],
+                                -of->inner_traction * of->inner[0],
+                                of->approach[0],
+                                of->approach[1],
+                                of->held[0],
+                                of->held[1]};
+        for (int i = 0; i < 4; i++) works[0] += 0.5 * (now[4 + i] + last[4 + i]) * (now[i] - last[i]);
+        for (int i = EHD_PAIR_CONTACTS; i < EHD_PAIR_CONTACTS + 2; i++)
+            works[1] += 0.5 * (now[2 + i] + last[2 + i]) * (now[i] - last[i]);
+        memcpy(last, now, sizeof now);
+    }
+}
+
+/* Bring contacts with memory to the end of the step that was made, and note its works. */
 void ehd_ball_block_accept(void *data, const ehd_moment *at) {
     const ehd_ball_block *of = data;
     for (int64_t b = 0; b < of->all.count; b++) {
-        if (of->all.memories[b] < 0) continue;
-        const int64_t film = of->all.films_of[b];
-        const ehd_pair_springs springs = pair_springs_of(of->all.films, film);
-        const ehd_pair_law law[2] = {pair_law_of(of->all.films, film, 0), pair_law_of(of->all.films, film, 1)};
-        ehd_ball_go_on(of->all.counts[b], law, &springs, of->rows + b * of->all.longest, pair_memory_of(&of->all, b));
+        const ehd_ball_found *rows = of->rows + b * of->all.longest;
+        double works[2], rise = 0.0;
+        ehd_ball_works(of->all.counts[b], rows, of->lengths + b, deviations_of(of->all.deviations, b, at),
+                       of->all.last + EHD_PAIR_LAST * b * of->all.longest, works);
+        if (of->all.memories[b] >= 0) {
+            const int64_t film = of->all.films_of[b];
+            const ehd_pair_springs springs = pair_springs_of(of->all.films, film);
+            const ehd_pair_law law[2] = {pair_law_of(of->all.films, film, 0), pair_law_of(of->all.films, film, 1)};
+            rise = ehd_ball_go_on(of->all.counts[b], law, &springs, rows, pair_memory_of(&of->all, b));
+        }
+        pair_note(&of->all, b, at, works, rise);
     }
     pair_made(&of->all, at);
 }
 
-/* Work of the centrifugal loads and tractions on balls since the last call [J], by the trapezoidal rule; added: of
- * ehd_ball_data; last (balls, 8): centres v, -(d - v) [m], and the forces then on each [N], written. Traction at the inner raceway is a force on the ring,
- * too, whose work is counted there: what is left of it goes with d - v. */
-double ehd_ball_speed_work(int64_t balls, const ehd_ball_found *found, const ehd_ball_shape *shape, const double *added,
-                           double *last) {
-    double work = 0.0;
-    for (int64_t j = 0; j < balls; j++, last += 8) {
-        const ehd_ball_found *of = &found[j];
-        const double inner = added ? added[4 * j] : 0.0, outer = added ? added[4 * j + 2] : 0.0;
-        const double reach = shape->outer_arm + of->approach[1] - outer, back = -(shape->inner_arm + of->approach[0] - inner);
-        const double now[8] = {reach * of->outer[0],
-                               reach * of->outer[1],
-                               back * of->inner[0],
-                               back * of->inner[1],
-                               -of->traction * of->outer[1],
-                               of->centrifugal + of->traction * of->outer[0],
-                               of->inner_traction * of->inner[1],
-                               -of->inner_traction * of->inner[0]};
-        for (int i = 0; i < 4; i++) work += 0.5 * (now[4 + i] + last[4 + i]) * (now[i] - last[i]);
-        memcpy(last, now, sizeof now);
-    }
-    return work;
-}
-
 void ehd_ball_block_powers(void *data, const ehd_moment *at, const double *motion, const ehd_answers *answers,
                            double *out) {
-    const ehd_ball_block *of = data;
+    (void)at;
     (void)motion;
     (void)answers;
-    for (int64_t b = 0; b < of->all.count; b++) {
-        const int64_t row = b * of->all.longest;
-        const double step = at->time - of->all.times[b];
-        const double work =
-            ehd_ball_speed_work(of->all.counts[b], of->rows + row, of->lengths + b,
-                                deviations_of(of->all.deviations, b, at), of->all.last + 8 * row);
-        of->all.times[b] = at->time;
-        of->all.works[b] = step > 0.0 ? work / step : 0.0;
-        out[3 * of->all.places[b]] = of->all.powers[2 * b];
-        out[3 * of->all.places[b] + 1] = of->all.powers[2 * b + 1] + of->all.works[b];
-    }
+    pair_powers(&((const ehd_ball_block *)data)->all, out);
 }

@@ -23,7 +23,7 @@ EHD_INLINE double pair_value(const double *low, const double *high, double t) {
 
 /* Load and stiffness of a dry point, F = C g^(3/2). */
 EHD_INLINE ehd_pair_load pair_point(double coefficient, double approach) {
-    ehd_pair_load found = {0.0, 0.0, 0.0};
+    ehd_pair_load found = {0.0, 0.0, 0.0, 0.0};
     if (approach > 0.0) {
         const double root = coefficient * sqrt(approach);
         found.load = root * approach;
@@ -38,11 +38,13 @@ EHD_INLINE void pair_with_held(ehd_pair_load *of, double held, double spring) {
     if (held >= 0.0) {
         of->load = load + held;
         of->stiffness += spring;
+        of->held = held;
         return;
     }
     const double size = sqrt(held * held + load * load);
     of->load = load * load / (size - held);
     of->stiffness = (spring * of->load + of->stiffness * load) / size;
+    of->held = of->load - load;
 }
 
 /* Place of an approach on the table. */
@@ -73,6 +75,7 @@ EHD_INLINE ehd_pair_load pair_carried_by(const ehd_pair_law *law, double one_sca
     }
     found.load = law->coefficient * exp(1.5 * pair_value(low, high, t));
     found.stiffness = 1.5 * found.load * slope / (law->scale * law->step * root);
+    found.held = 0.0;
     if (held && held[1] > 0.0) pair_with_held(&found, held[0] + held[1] * (approach - held[2]), held[1]);
     return found;
 }

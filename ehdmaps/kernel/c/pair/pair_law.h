@@ -32,9 +32,9 @@ typedef struct ehd_pair_state {
     double load, stiffness, damping;
 } ehd_pair_state;
 
-/* Load and stiffness of a contact, and its place on the table. */
+/* Load and stiffness of a contact, and its place on the table; what its memory adds to the load at rest. */
 typedef struct ehd_pair_load {
-    double load, stiffness, place;
+    double load, stiffness, place, held;
 } ehd_pair_load;
 
 /* Laws of both contacts of a bearing over the entrainment speed, at speeds that are even in its logarithm. Index 0 is the

@@ -90,11 +90,18 @@ EHD_INLINE void pair_springs_at(const ehd_pair_law *law, const ehd_pair_springs 
     out[count] = most(out[count], PAIR_SHORTEST);
 }
 
+/* Energy of a spring by its force [J]. */
+EHD_INLINE double pair_spring_energy(double force, double stiffness) {
+    return stiffness > 0.0 ? 0.5 * force * force / stiffness : 0.0;
+}
+
 /* Bring the memory of n contacts of a side, of as many springs as compilers know, to the end of the step over which they
- * held, and to K and theta at their approaches there. A dry contact keeps no force. */
-EHD_INLINE void pair_go_on(const ehd_pair_law *law, const ehd_pair_springs *of, int64_t count, int side, int64_t n,
+ * held, and to K and theta at their approaches there; by how much the energy of their springs rises [J]. A dry contact keeps
+ * no force. */
+EHD_INLINE double pair_go_on(const ehd_pair_law *law, const ehd_pair_springs *of, int64_t count, int side, int64_t n,
                            const double *approach, double *memory) {
     const int has_film = law->rows > 1;
+    double rise = 0.0;
     for (int64_t i = 0; i < n; i++) {
         double after[PAIR_MOST_SPRINGS + 1] = {0.0}, *at = memory + EHD_PAIR_AT * n + i;
         const double moved = approach[i] - *at;
@@ -103,12 +110,15 @@ EHD_INLINE void pair_go_on(const ehd_pair_law *law, const ehd_pair_springs *of, 
         for (int64_t r = 0; r < count; r++) {
             double *own = memory + (EHD_PAIR_HEAD + EHD_PAIR_EACH * r) * n + i;
             double *force = own + EHD_PAIR_FORCE * n, *stiffness = own + EHD_PAIR_STIFFNESS * n;
+            rise -= pair_spring_energy(*force, *stiffness);
             *force = has_film ? pair_gone_on(*force, own[EHD_PAIR_LEFT * n], own[EHD_PAIR_OVER * n] * moved, *stiffness,
                                              after[r])
                               : 0.0;
             *stiffness = after[r];
+            rise += pair_spring_energy(*force, *stiffness);
         }
         *at = approach[i];
         memory[EHD_PAIR_TIME * n + i] = after[count];
     }
+    return rise;
 }

@@ -52,6 +52,10 @@ static void pair_answer_port(int64_t first, double turn, const ehd_moment *at, c
     }
 }
 
+/* Numbers that are kept of a rolling element over a step: places and forces for the work of speed, and of each contact
+ * approaches and what its memory adds to the load, two numbers each of lines. */
+enum { EHD_PAIR_CONTACTS = 8, EHD_PAIR_LAST = 16 };
+
 /* Bearings of a kind, one row each; rows of rolling elements are as long as the longest. The blocks of kinds begin with
  * it. */
 typedef struct ehd_pair_block {
@@ -60,8 +64,9 @@ typedef struct ehd_pair_block {
     const int64_t *counts, *slices;            /* (count,): rolling elements; slices of a contact, 1 of points */
     const double *starts, *turns, *offsets; /* angle of the first one [rad], cage by system, axial offset [m] */
     double *powers;                         /* (count, 2): what it dissipates, what the turning cage brings in [W] */
-    double *last;                           /* (count, longest, 8): places and loads of the last step, see speed_work */
-    double *times, *works;                  /* (count,): its time [s], work of speed by then [W] */
+    double *last;                           /* (count, longest, EHD_PAIR_LAST): of the last step, see the work of a kind */
+    double *times, *works;                  /* (count,): its time [s], power of speed by then [W] */
+    double *spent;                          /* (count,): what films with memory took up over the last step [J] */
     const int64_t *memories;                /* (count,): where a bearing's memory begins; < 0 without one */
     double *memory;                         /* memory of the contacts of all bearings, see pair_law.h */
     double *clock;                          /* (2,): end of the last step, and of that for which they hold [s] */
@@ -86,6 +91,24 @@ static void pair_begin(const ehd_pair_block *all, const ehd_moment *at) {
         if (all->memories[b] >= 0)
             ehd_pair_hold(2 * all->counts[b], all->slices[b], films->columns - 1, films->shorter,
                           at->time - all->clock[0], pair_memory_of(all, b));
+}
+
+/* Note the works of a step of a bearing: of speed, and of what memory adds to loads, of which springs hold `rise` [J]. */
+static void pair_note(const ehd_pair_block *all, int64_t b, const ehd_moment *at, const double works[2], double rise) {
+    const double step = at->time - all->times[b];
+    all->times[b] = at->time;
+    all->works[b] = step > 0.0 ? works[0] / step : 0.0;
+    all->spent[b] = step > 0.0 ? works[1] - rise : 0.0;
+}
+
+/* Write what bearings dissipate, and what cage, deviations and speed bring in. */
+static void pair_powers(const ehd_pair_block *all, double *out) {
+    for (int64_t b = 0; b < all->count; b++) {
+        double *row = out + 3 * all->places[b];
+        row[0] = all->powers[2 * b];
+        row[1] = all->powers[2 * b + 1] + all->works[b];
+        row[2] = all->spent[b];
+    }
 }
 
 /* Note the end of a step that was made. */

@@ -10,11 +10,18 @@ static double deviation_place(const ehd_deviations *of, double angle) {
     return (turns - floor(turns)) * (double)of->nodes;
 }
 
-/* Add the value of a cubic between two nodes at a part t of the way, and its change by a node times rate, to out (2,). */
-EHD_INLINE void add_deviation(const double *left, const double *right, double t, double rate, double *out) {
-    const double rise = right[0] - left[0], both = left[1] + right[1] - 2.0 * rise, bend = rise - left[1] - both;
-    out[0] += left[0] + t * (left[1] + t * (bend + t * both));
-    out[1] += rate * (left[1] + t * (2.0 * bend + 3.0 * t * both));
+/* Weights of values and changes by a node of two nodes, left and right in turn, in a cubic at a part t of the way between
+ * them, and in its slope. */
+EHD_INLINE void deviation_weights(double t, double value[4], double slope[4]) {
+    const double r = 1.0 - t, tr = t * r;
+    value[2] = t * t * (3.0 - 2.0 * t);
+    value[0] = 1.0 - value[2];
+    value[1] = tr * r;
+    value[3] = -tr * t;
+    slope[2] = 6.0 * tr;
+    slope[0] = -slope[2];
+    slope[1] = r * (r - 2.0 * t);
+    slope[3] = t * (t - 2.0 * r);
 }
 
 void ehd_deviations_by(const ehd_deviations *of, const double *angles, const double *speeds, double *added) {
@@ -24,19 +31,30 @@ void ehd_deviations_by(const ehd_deviations *of, const double *angles, const dou
     for (int side = 0; side < 2; side++) {
         const double ring = deviation_place(of, angles[0] - angles[1 + side]), own = side ? spin : spin + half;
         const double rate = per_angle * (speeds[0] - speeds[1 + side]), own_rate = per_angle * speeds[3];
-        const int64_t own_cell = (int64_t)own;
+        const int64_t own_cell = (int64_t)own, of_ring = of->tables[side];
         const double *before = of->own + row * (own_cell & last), *after = of->own + row * ((own_cell + 1) & last);
+        double v[4], k[4];
+        deviation_weights(own - (double)own_cell, v, k); /* all elements have turned alike */
         for (int64_t j = 0; j < of->elements; j++) {
-            const int64_t *tables = of->tables + 3 * j, of_ring = tables[side], of_own = 2 * tables[2];
-            double *out = added + 2 * (2 * j + side);
-            out[0] = of->sizes[j];
-            out[1] = 0.0;
+            const int64_t of_own = 2 * of->tables[3 * j + 2];
+            double value = of->sizes[j], change = 0.0;
             if (of_ring >= 0) {
-                const double place = ring + of->places[j], *table = of->table + 2 * of_ring * of->nodes;
+                const double place = ring + of->places[j];
                 const int64_t cell = (int64_t)place;
-                add_deviation(table + 2 * (cell & last), table + 2 * ((cell + 1) & last), place - (double)cell, rate, out);
+                const double *table = of->table + 2 * of_ring * of->nodes;
+                const double *left = table + 2 * (cell & last), *right = table + 2 * ((cell + 1) & last);
+                const double t = place - (double)cell, rise = right[0] - left[0];
+                const double both = left[1] + right[1] - 2.0 * rise, bend = rise - left[1] - both;
+                value += left[0] + t * (left[1] + t * (bend + t * both));
+                change = rate * (left[1] + t * (2.0 * bend + 3.0 * t * both));
             }
-            if (of_own >= 0) add_deviation(before + of_own, after + of_own, own - (double)own_cell, own_rate, out);
+            if (of_own >= 0) {
+                const double *left = before + of_own, *right = after + of_own;
+                value += v[0] * left[0] + v[1] * left[1] + v[2] * right[0] + v[3] * right[1];
+                change += own_rate * (k[0] * left[0] + k[1] * left[1] + k[2] * right[0] + k[3] * right[1]);
+            }
+            added[2 * (2 * j + side)] = value;
+            added[2 * (2 * j + side) + 1] = change;
         }
     }
 }

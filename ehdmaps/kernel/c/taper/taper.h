@@ -52,6 +52,8 @@ typedef struct ehd_taper_roller {
     double made;                           /* not 0: the next call starts here */
     double stiffness[3][3], damping[3][3]; /* of the force by D and by its rate */
     double added[2];               /* what deviations add to the approaches of cone and cup [m] */
+    double held[2][2];             /* what the memory of films adds to the loads of cone and cup at rest: sums over the slices
+                                    * of that [N], and of it times their levers [N m] */
 } ehd_taper_roller;
 
 /* Force on the inner ring at rest [N], [N m], -dforce/dpose and -dforce/dvelocity. */

@@ -81,7 +81,7 @@ static void taper_state_at(const taper_given *of, const double v[3], taper_state
         const double b = at->lever, *by = at->outer != 0.0 ? v : moved, sign = at->outer != 0.0 ? -1.0 : 1.0;
         const ehd_pair_load found = pair_point(at->coefficient, at->x * by[0] + at->r * by[1] + b * by[2] - at->play);
         const double q = found.load, k = found.stiffness, c = q > 0.0 ? data->damping + data->damping_time * k : 0.0;
-        const taper_sums here = {q, q * b, {k, k * b, k * b * b}, {c, c * b, c * b * b}};
+        const taper_sums here = {q, q * b, {k, k * b, k * b * b}, {c, c * b, c * b * b}, {0.0, 0.0}};
         s->rib[m] = here;
         s->rest[0] += sign * q * at->x;
         s->rest[1] += sign * q * at->r;
@@ -289,6 +289,8 @@ static void taper_tell(const taper_given *of, taper_state *s, ehd_taper_roller *
         roller->added[1] = of->added[2];
         of->by_rates[4] = cone->q * of->added[1] + cup->q * of->added[3];
     }
+    memcpy(roller->held[0], cone->held, sizeof cone->held);
+    memcpy(roller->held[1], cup->held, sizeof cup->held);
     roller->force[0] = cone->q * data->cone[0];
     roller->force[1] = cone->q * data->cone[1];
     roller->force[2] = cone->qb;

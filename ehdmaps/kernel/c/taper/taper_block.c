@@ -23,18 +23,24 @@ typedef struct ehd_taper_block {
 
 EHD_SIZE_OF(ehd_taper_block)
 
-/* Work of centrifugal loads and gyroscopic moments (2,) on rollers since the last call [J], by the trapezoidal rule;
- * last (rollers, 8): places of that call, radial [m] and turned [rad], and its loads [N], [N m]; written. */
-double ehd_taper_speed_work(int64_t count, const ehd_taper_roller *rollers, const double *loads, double *last) {
-    double work = 0.0;
-    for (int64_t j = 0; j < count; j++, last += 8)
-        for (int i = 0; i < 2; i++) {
-            const double place = rollers[j].place[1 + i];
-            work += 0.5 * (loads[i] + last[2 + i]) * (place - last[i]);
-            last[i] = place;
-            last[2 + i] = loads[i];
+/* Works since the last call [J], by the trapezoidal rule: of centrifugal loads and gyroscopic moments, loads (2,), and of what
+ * memory adds to the loads of lines; works (2,), written. last (rollers, EHD_PAIR_LAST): places, radial [m] and turned [rad],
+ * and their loads [N], [N m]; of both lines approaches [m], turns [rad], and what is added to the loads; written. */
+void ehd_taper_works(const ehd_taper_data *data, const ehd_taper_roller *rollers, const double *loads, double *last,
+                     double *works) {
+    works[0] = works[1] = 0.0;
+    for (int64_t j = 0; j < data->rollers; j++, last += EHD_PAIR_LAST) {
+        double now[EHD_PAIR_LAST] = {rollers[j].place[1], rollers[j].place[2], loads[0], loads[1]};
+        for (int side = 0; side < 2; side++) {
+            double *line = now + EHD_PAIR_CONTACTS + 2 * side;
+            line[0] = taper_approach(data, rollers + j, side, line + 1);
+            memcpy(line + 4, rollers[j].held[side], sizeof rollers[j].held[side]);
         }
-    return work;
+        for (int i = 0; i < 2; i++) works[0] += 0.5 * (now[2 + i] + last[2 + i]) * (now[i] - last[i]);
+        for (int i = EHD_PAIR_CONTACTS; i < EHD_PAIR_CONTACTS + 4; i++)
+            works[1] += 0.5 * (now[4 + i] + last[4 + i]) * (now[i] - last[i]);
+        memcpy(last, now, sizeof now);
+    }
 }
 
 /* Write the answer of a bearing; what ehd_taper_force returns. */
@@ -77,36 +83,30 @@ int ehd_taper_block_answer(void *data, const ehd_moment *at, const double *motio
     return EHD_FOUND;
 }
 
-/* Take note of a step that was made: places of the rollers for the work of their loads, films with memory. */
+/* Take note of a step that was made: its works, films with memory. */
 void ehd_taper_block_accept(void *data, const ehd_moment *at) {
     const ehd_taper_block *of = data;
     for (int64_t b = 0; b < of->all.count; b++) {
         const ehd_taper_data *bearing = of->bearings + b;
         const ehd_taper_roller *rollers = of->rollers + b * of->all.longest;
-        const double square = at->speed * at->speed, step = at->time - of->all.times[b];
-        const double loads[2] = {of->loads[2 * b] * square, of->loads[2 * b + 1] * square};
-        const double work = ehd_taper_speed_work(bearing->rollers, rollers, loads, of->all.last + 8 * b * of->all.longest);
-        of->all.times[b] = at->time;
-        of->all.works[b] = step > 0.0 ? work / step : 0.0;
+        const double square = at->speed * at->speed, loads[2] = {of->loads[2 * b] * square, of->loads[2 * b + 1] * square};
+        double works[2], rise = 0.0;
+        ehd_taper_works(bearing, rollers, loads, of->all.last + EHD_PAIR_LAST * b * of->all.longest, works);
         if (of->all.memories[b] >= 0) {
             const ehd_pair_springs springs = pair_springs_of(of->all.films, of->all.films_of[b]);
             const ehd_pair_law law[2] = {pair_law_of(of->all.films, of->all.films_of[b], 0),
                                          pair_law_of(of->all.films, of->all.films_of[b], 1)};
-                    ehd_taper_go_on(bearing, law, &springs, rollers, of->approaches, pair_memory_of(&of->all, b));
+            rise = ehd_taper_go_on(bearing, law, &springs, rollers, of->approaches, pair_memory_of(&of->all, b));
         }
+        pair_note(&of->all, b, at, works, rise);
     }
     pair_made(&of->all, at);
 }
 
-/* Write what contacts dissipate, and what cage and speed bring in. */
 void ehd_taper_block_powers(void *data, const ehd_moment *at, const double *motion, const ehd_answers *answers,
                             double *out) {
-    const ehd_taper_block *of = data;
     (void)at;
     (void)motion;
     (void)answers;
-    for (int64_t b = 0; b < of->all.count; b++) {
-        out[3 * of->all.places[b]] = of->all.powers[2 * b];
-        out[3 * of->all.places[b] + 1] = of->all.powers[2 * b + 1] + of->all.works[b];
-    }
+    pair_powers(&((const ehd_taper_block *)data)->all, out);
 }

@@ -9,9 +9,10 @@
 #define TAPER_CHUNK 32 /* slices at once */
 #define TAPER_LANES 4  /* slices that are added up side by side */
 
-/* Sums of a contact: load, load b; stiffness k, k b, k b b; the same of damping. b is the lever of a slice. */
+/* Sums of a contact: load, load b; stiffness k, k b, k b b; the same of damping; what memory adds to load and load b.
+ * b is the lever of a slice. */
 typedef struct taper_sums {
-    double q, qb, k[3], c[3];
+    double q, qb, k[3], c[3], held[2];
 } taper_sums;
 
 /* What of a line is asked: its law; levers and depths of the slices; approach and rotation of the line; the memory of
@@ -108,13 +109,14 @@ EHD_INLINE void taper_film(const ehd_pair_law *law, int count, const double *g, 
 }
 
 /* The same at the end of a step with memory: with p the load at rest and m the force that is held p + m, or
- * m + sqrt(m^2 + p^2) where it pulls. */
+ * m + sqrt(m^2 + p^2) where it pulls; held: what that is more than p. */
 EHD_INLINE void taper_with_held(int count, const double *g, const double *pull, const double *spring,
-                                 const double *at, double *load, double *stiffness) {
+                                 const double *at, double *load, double *stiffness, double *held) {
     for (int i = 0; i < count; i++) {
         const double more = pull[i] + spring[i] * (g[i] - at[i]), pressed = taper_positive(more), p = load[i];
         const double pulled = more - pressed, size = sqrt(pulled * pulled + p * p), total = p * (p / (size - pulled));
         load[i] = total + pressed;
+        held[i] = total - p + pressed;
         stiffness[i] = (spring[i] * total + stiffness[i] * p) / size;
     }
 }
@@ -153,11 +155,26 @@ EHD_INLINE void taper_sum(int count, const double *load, const double *stiffness
     }
 }
 
+/* Add up what memory adds to the loads of slices, and this with their levers. */
+EHD_INLINE void taper_sum_held(int count, const double *held, const double *lever, double sum[2][TAPER_LANES]) {
+    int i = 0;
+    for (; i + TAPER_LANES <= count; i += TAPER_LANES)
+        for (int lane = 0; lane < TAPER_LANES; lane++) {
+            sum[0][lane] += held[i + lane];
+            sum[1][lane] += held[i + lane] * lever[i + lane];
+        }
+    for (; i < count; i++) {
+        sum[0][0] += held[i];
+        sum[1][0] += held[i] * lever[i];
+    }
+}
+
 /* Sums of load and stiffness of a line. */
 EHD_CLONES static void taper_line_sums(const taper_line *line, taper_sums *of) {
     const ehd_pair_law *law = line->law;
     const double part = 1.0 / (double)line->slices;
-    double g[TAPER_CHUNK], load[TAPER_CHUNK], stiffness[TAPER_CHUNK], sum[5][TAPER_LANES] = {{0.0}}, total[5];
+    double g[TAPER_CHUNK], load[TAPER_CHUNK], stiffness[TAPER_CHUNK], held[TAPER_CHUNK];
+    double sum[5][TAPER_LANES] = {{0.0}}, more[2][TAPER_LANES] = {{0.0}}, total[5];
     int64_t first = 0, end = line->slices;
     if (law->rows == 0) { /* what carries nothing at both ends of a dry line */
         while (first < end && !taper_carries(line, first)) first++;
@@ -173,7 +190,8 @@ EHD_CLONES static void taper_line_sums(const taper_line *line, taper_sums *of) {
         if (line->memory) {
             const double *memory = line->memory + first;
             taper_with_held(count, g, memory + EHD_PAIR_PULL * line->slices, memory + EHD_PAIR_SPRING * line->slices,
-                            memory + EHD_PAIR_AT * line->slices, load, stiffness);
+                            memory + EHD_PAIR_AT * line->slices, load, stiffness, held);
+            taper_sum_held(count, held, line->lever + first, more);
         }
         taper_sum(count, load, stiffness, line->lever + first, sum);
     }
@@ -181,6 +199,7 @@ EHD_CLONES static void taper_line_sums(const taper_line *line, taper_sums *of) {
     of->q = total[0];
     of->qb = total[1];
     for (int i = 0; i < 3; i++) of->k[i] = total[2 + i];
+    for (int i = 0; i < 2; i++) of->held[i] = part * ((more[i][0] + more[i][1]) + (more[i][2] + more[i][3]));
 }
 
 /* Sums of the damping of a line whose other sums are known; slices with a spring have none of their own. */
