@@ -99,9 +99,7 @@ def cost() -> None:
                     made = run(model.system, SpeedProfile.constant(157.0), 0.1, settings, displacement=start)
                     turns[index] = made.iterations / made.steps
                     best[index] = min(best[index], time.process_time() - began)
-            times = (
-                f"{200.0 * best[0]:.1f} us, with waves unfelt {best[1] / best[0]:.2f} times, with waviness"
-            )
+            times = f"{200.0 * best[0]:.1f} us, with waves unfelt {best[1] / best[0]:.2f} times, with waviness"
             words = f"{times} {best[2] / best[0]:.2f} times; iterations {turns[0]:.2f}, {turns[1]:.2f}, {turns[2]:.2f}"
             print(f"step of {kind.name}, {NAMES[law]}: {words}", flush=True)
 

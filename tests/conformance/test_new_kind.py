@@ -106,12 +106,8 @@ class PadForce(LocatingForce):
     def works(self, speeds, last):
         return 0.0, 0.0
 
-    @property
-    def last_rows(self):
-        return self._load[:, None]
-
     def stored(self, rows):
-        return float(np.sum(rows**2)) / (2.0 * STIFFNESS)
+        return float(np.sum(rows[:, 0] ** 2)) / (2.0 * STIFFNESS)
 
 
 @dataclass(frozen=True)

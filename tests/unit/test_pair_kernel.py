@@ -119,18 +119,18 @@ def test_springs_over_a_step_solve_their_equation(part):
 
 def test_energies_are_the_integrals_of_loads():
     """Against adaptive quadrature over the approach, within the table and beyond both ends: to what that asks, 1e-9."""
-    dry, begin = NormalLaw(HERTZ), CENTRE - 5.0 * SCALE * math.sinh(-FIRST)
-    for law, ends in ((film(), APPROACHES[::50]), (dry, np.array([-1e-7, 2e-6]))):
-        first = begin if law is not dry else 0.0
-        wanted = [
-            quad(lambda at, law=law: contacts_at(law, np.array([at]))[0, 0], first, end, epsabs=0.0, epsrel=1e-10,
-                 points=[CENTRE] if first < CENTRE < end else None, limit=200)[0] if end > 0.0 or law is not dry else 0.0
-            for end in ends
-        ]  # fmt: skip
-        found = energies(law, ends) - energies(law, np.array([first]))
-        np.testing.assert_allclose(found, wanted, rtol=1e-7, atol=1e-9 * max(wanted))
-    # a line of the law F = C g^(10/9)
-    assert energies(dry, np.array([3e-6]), 10.0 / 9.0)[0] == pytest.approx(HERTZ * 9.0 / 19.0 * 3e-6 ** (19.0 / 9.0))
+    law, begin = film(), CENTRE - 5.0 * SCALE * math.sinh(-FIRST)
+    ends = APPROACHES[::50]
+    asked = {"epsabs": 0.0, "epsrel": 1e-10, "limit": 200}
+    wanted = [
+        quad(lambda at: contacts_at(law, np.array([at]))[0, 0], begin, end, points=[CENTRE], **asked)[0] for end in ends
+    ]
+    found = energies(law, ends) - energies(law, np.array([begin]))
+    np.testing.assert_allclose(found, wanted, rtol=1e-7, atol=1e-9 * max(wanted))
+    # dry points and lines, F = C g^(3/2) and C g^(10/9)
+    for exponent in (1.5, 10.0 / 9.0):
+        whole = quad(lambda g, exponent=exponent: HERTZ * g**exponent, 0.0, 3e-6, **asked)[0]
+        assert energies(NormalLaw(HERTZ), np.array([3e-6, -1e-6]), exponent) == pytest.approx([whole, 0.0], rel=1e-9)
 
 
 def moved_on(place, after, memory):

@@ -348,8 +348,8 @@ class LocatingForce:
 
     @property
     def last_rows(self) -> FloatArray:
-        """Numbers of all elements after the last call, (Z, ...)."""
-        raise NotImplementedError
+        """Numbers of all elements after the last call, (Z, ...); loads, where a kind keeps no others."""
+        return self.last_loads.T
 
     def works(self, speeds: tuple[float, float], last: FloatArray) -> tuple[float, float]:
         """Works since the last call [J]: of centrifugal loads and gyroscopic moments, and of what memory adds to loads.
