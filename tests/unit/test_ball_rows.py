@@ -186,6 +186,29 @@ def test_each_side_of_a_set_has_the_force_and_shares_it():
     assert not tandem.axial_play and preload_of(tandem) == 0.0
 
 
+@pytest.mark.parametrize("name", ["71914C", "7014C", "7210AC"])
+def test_three_and_four_by_class_have_the_factors_of_the_maker(name):
+    """NSK prints 1.36 and 2 times the preload of a pair, 1.48 and 2 times its axial rigidity, 1.54 and 2 times its
+    radial one. Angles that change leave 1.2 % of the first; its rigidities of three are 4 and 8 % above Hertz'."""
+    for level in PRELOADS:
+        found = []
+        for arrangement in ("DB", "TBT", "QBC"):
+            one = ball_estimate(f"{name} {arrangement}{level}")
+            force, stiffness, _ = force_of(one)(np.zeros(6))
+            assert abs(force[0]) < 1e-6 * preload_of(one)
+            found.append((preload_of(one), stiffness[0, 0], stiffness[1, 1] + stiffness[2, 2]))
+        pair, three, four = np.array(found)
+        assert four / pair == pytest.approx(np.full(3, 2.0), rel=1e-6)
+        assert three[0] / pair[0] == pytest.approx(1.36, rel=0.012)
+        assert three[1:] / pair[1:] == pytest.approx(np.array([1.48, 1.54]), rel=0.08)
+    with pytest.raises(InputError, match="7014C DTL; allowed: zero or more, of rows that carry either way"):
+        ball_estimate("7014C DTL")
+    with pytest.raises(
+        InputError, match="got '7014 CD/P4AQBCB'; allowed: a set without class of preload, with a force"
+    ):
+        ball_estimate("7014 CD/P4AQBCB")  # SKF's class
+
+
 def test_mounting_tightens_a_pair_as_less_clearance_tightens_its_bearings():
     """A fit, and a warm inner ring: radial as in cylindrical bearings, axial by the distance of the rows."""
     pair = ball_estimate("7014C DBL")
@@ -211,7 +234,7 @@ def test_mounting_tightens_a_pair_as_less_clearance_tightens_its_bearings():
             "allowed: a set without class of preload, with a force by keys, .*NSK's classes EL, L, M, H",
         ),
         ("7208B DBL", "allowed: a set without class of preload"),
-        ("7014C QBCL", "allowed: a set without class of preload"),
+        ("7014 CD/P4AQBCB", "allowed: a set without class of preload"),
     ],
 )
 def test_forces_that_are_not_known_are_asked_for(typed, said):

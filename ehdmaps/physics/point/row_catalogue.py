@@ -152,17 +152,22 @@ def _matched_set(designation: str, found: Designation, one: BallGeometry, width:
     if level:
         rows = table("balls")["preload"].get(series, {}).get(suffix, [])
         row = next((row for row in rows if bore_code(row[0]) == code), None)
-        if row is None or level not in PRELOADS or name[:1] != "D":
+        if row is None or level not in PRELOADS:
             raise InputError(
                 f"bearing designation: got {short(designation)}; allowed: a set without class of preload, with a force "
                 f'by keys, {{ name = "{found.single} {name}", preload = "200 N" }}; NSK\'s classes '
-                f"{', '.join(PRELOADS)} are known for pairs of 719, 70, 72 C and AC, those of others are not"
+                f"{', '.join(PRELOADS)} are known for 719, 70, 72 C and AC, those of others are not"
             )
         preload = row[1 + PRELOADS.index(level)]
     ways = SETS[name]
     middle = 0.5 * (len(ways) - 1)
     rows = tuple(BallRow(way, (place - middle) * width) for place, way in enumerate(ways))
-    return preloaded(dataclasses.replace(one, name=found.name, rows=rows, clearance=0.0, clearance_range=None), preload)
+    made = dataclasses.replace(one, name=found.name, rows=rows, clearance=0.0, clearance_range=None)
+    if preload and made.axial_play:  # each bearing is ground for a pair: three or four press each other by as much way
+        ground = pressed_by(made, preload)
+        pressed = dataclasses.replace(made, rows=tuple(row._replace(shift=ground) for row in rows))
+        preload = preload_of(pressed)
+    return preloaded(made, preload)
 
 
 def preloaded(geometry: BallGeometry, preload: float) -> BallGeometry:
