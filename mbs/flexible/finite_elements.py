@@ -44,7 +44,7 @@ def check_size(where: str, size: int) -> None:
     Parameters
     ----------
     where : str
-        Where they come from.
+        Source of the numbers, for messages.
     size : int
         Their number.
 
