@@ -20,17 +20,21 @@ class Command:
     """A row: a command with its options; `slow` ones run in time, or write pages.
 
     Those that are dear have some machines alone, by the law with which each has it; those that are `turned` have every
-    machine, by one law and the other in turn.
+    machine, by one law and the other in turn. Those that are `linear` ask for what modes have of each bearing, K, C and
+    films with memory, in the same words: machines whose elements another one has are left out.
     """
 
     name: str
     options: tuple[str, ...] = ()
     output: str = ""
     slow: bool = False
+    linear: bool = False
     only: Mapping[str, str] | None = None
     turned: int | None = None
 
     def has(self, machine: Machine, law: str) -> bool:
+        if self.linear and machine.name in LIKE_OTHERS:
+            return False
         if self.turned is not None and machine.films:
             return (MACHINES.index(machine) + self.turned) % 2 == list(LAWS).index(law)
         return self.only is None or self.only.get(machine.name) == law
@@ -48,14 +52,26 @@ PAGES = {
     "table": "dry",
 }  # fmt: skip
 
+LIKE_OTHERS = (
+    "needle", "double row cylindrical", "hybrid, thin section", "two rows, four-point", "self-aligning",
+    "angular contact", "ribbed NJ",
+)  # fmt: skip
+"""Machines whose bearings have the elements of another one, with other dimensions."""
+
 COMMANDS = (
     Command("check", turned=0),
     Command("statics", output="-o result.nc", turned=1),
     Command("modes", output="-o result.nc", turned=1),
-    Command("lsa", output="-o result.nc", turned=0),
-    Command("sweep", ("--workers", "1"), output="-o result.nc", turned=1),
-    Command("critical", output="-o result.nc", turned=0),
-    Command("hammer", ("--hits", "1", "--duration", "20 ms", "--workers", "1"), output="-o result.uff", turned=1),
+    Command("lsa", output="-o result.nc", linear=True, turned=0),
+    Command("sweep", ("--workers", "1"), output="-o result.nc", linear=True, turned=1),
+    Command("critical", output="-o result.nc", linear=True, turned=0),
+    Command(
+        "hammer",
+        ("--hits", "1", "--duration", "20 ms", "--workers", "1"),
+        output="-o result.uff",
+        linear=True,
+        turned=1,
+    ),
     Command("identify", ("--plan", "--free", "pull.force"), turned=0),
     Command("report", output="-o result.html", slow=True, only=PAGES),
     Command("runup", ("--workers", "1"), output="-o result.nc", slow=True, only=FILMS),

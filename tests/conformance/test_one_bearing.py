@@ -94,12 +94,12 @@ def test_one_bearing(name, capsys, tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", KINDS)
+@pytest.mark.parametrize("name", ["6208", "7208B", "NU308", "NA4908", "32208", "NUP308"])
 def test_heat_in_the_inlet_thins_films_of_every_kind(name, capsys, tmp_path, monkeypatch):
     """Under the same words; the film of the page is smaller by about the factor of QL, 1 to 4 here."""
     monkeypatch.chdir(tmp_path)
     ask = (name, "--load", "2 kN", "--speed", "9000 rpm", "--temperature", "60 degC", *KINDS[name], "-o", "a.nc")
-    films, printed = {}, name in ("6208", "7208B", "NU308", "NA4908")  # others have films by formulas beside their laws
+    films, printed = {}, name not in ("32208", "NUP308")  # these have films by formulas beside their laws
     for physics in ("isothermal", "inlet-heat") if printed else ("inlet-heat",):
         status, page, err = run(capsys, "bearing", *ask, "--physics", physics)
         assert status in (0, 1), err

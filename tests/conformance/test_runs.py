@@ -13,7 +13,7 @@ from mbs.transient.run import Options, run
 from tests.conformance.machines import MIXED
 
 ALL = MIXED[-1]
-STEPS, STEP = 60, 2e-5
+STEPS, STEP = 30, 2e-5
 
 TEXT = ALL.text().replace('bearing = "6208"', 'bearing = "6208"\ndiametral_clearance = "0 um"')
 """The ball bearing without clearance: with some of it contacts beat, and differences grow beyond the bounds below."""

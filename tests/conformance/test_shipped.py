@@ -54,6 +54,7 @@ def shortened(tmp_path, monkeypatch):
 def test_every_analysis_of_a_shipped_scene(name, shortened, capsys, monkeypatch):
     """Of two speeds and 400 steps: whatever ends with another status than 0 says why."""
     text = shortened(name)
+    monkeypatch.setattr("mbs.budget.SUPPLIES", ("oil air",))  # of three, with a law for each
     if name not in BUDGETS:
         without_budget(monkeypatch)
     law = ("--law", "hertz:1.25e-5 s") if name in DRY else ()

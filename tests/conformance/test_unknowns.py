@@ -127,7 +127,8 @@ def test_responses_and_speeds(one, command, here, capsys):
         assert not known.any() or np.any((low < high)[known])
 
 
-@pytest.mark.parametrize("name", DESIGNATIONS)
+# of two rows, and of ribs, one each: others are two bearings to round-off (`test_roller_rows`), or its mirror image
+@pytest.mark.parametrize("name", [one for one in DESIGNATIONS if one not in ("NNCF5010", "NJ308", "QJ208", "1208")])
 def test_one_bearing(name, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     known = "; ".join(f"{key} = +- {at}" for key, at in KNOWN.items())

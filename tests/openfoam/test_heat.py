@@ -220,7 +220,7 @@ def test_a_limiting_stress_and_heat_at_the_highest_pressures() -> None:
     """From a coarse grid on, each grid is near the one before it, with its temperatures: from cold films none is."""
     contact = BearingGeometry.named("NU308").contacts(STEEL, "iso16281")[1]
     point = OperatingPoint(1e6, 10.0**-0.15, 293.15)
-    solver = OpenFoamSolver(physics="thermal", shear="limiting", starter=reynolds_start)
+    solver = OpenFoamSolver(columns=200, physics="thermal", shear="limiting", starter=reynolds_start)
     (film,) = solver.solve_line(contact, OIL, (point.load,), point.entrainment_speed, point.temperature)
     assert film.status.usable, film.reason
     reynolds = ReynoldsSolver(physics="thermal", shear="limiting")

@@ -246,7 +246,7 @@ def test_refused(refusing, small_map):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("outside", "calls"), [("error", "10000"), ("clamp", "10000")])
+@pytest.mark.parametrize(("outside", "calls"), [("error", "2000"), ("clamp", "2000")])
 def test_hostile(small_map, tmp_path, outside, calls):
     """Neither the address sanitizer nor that of undefined behaviour finds anything, whatever numbers come."""
     folder = exported(small_map, tmp_path / "c", "--outside", outside)

@@ -126,12 +126,11 @@ def test_from_a_job_to_the_modes_of_a_machine(tmp_path, monkeypatch):
     found = run(
         tmp_path,
         ("ehdmaps.jobs.cli", "generate", "job.toml", "-o", "map.nc", "--workers", "1"),
-        ("ehdmaps.jobs.cli", "plot", "map.nc", "-o", "map.png"),
         ("mbs.cli", "modes", "nu308_rigid", "--map", "map.nc", "-o", "modes.nc", "--plot", "modes.png", *bands),
         # a shipped housing is read without what has reduced it
         ("mbs.cli", "modes", "gearbox", "--law", "hertz", *bands),
     )
-    assert [ended.status for ended in found] == [0, 0, 0, 0], found
+    assert [ended.status for ended in found] == [0, 0, 0], found
 
 
 NEEDY = (

@@ -14,10 +14,10 @@ BEARING = ("bearing", "NU308", "--load", "5 kN", "--speed", "500 rpm", "--slices
 COMMANDS = (
     (*BEARING, "map", "--map", "MAP"),
     ("bearing", "6208", "--load", "2 kN", "--speed", "1500 rpm", "--bands", "numerics"),
-    ("bearing", "32208", "--load", "2 kN", "--axial", "1 kN", "--speed", "1500 rpm", "--bands", "numerics"),
     ("sweep", "nu308_rigid", "--speed", "500 rpm", "900 rpm", "2", "--bands", "numerics"),
+    ("hammer", "nu308_rigid", "--map", "MAP", "--films", "memory", "--hits", "1", "--duration", "10 ms", "-o", "h.uff"),
 )
-"""Kinds of bearings and of commands, with films of maps and of the film table; runs in time load nothing more."""
+"""Kinds of bearings and of commands, with films of maps and of the film table, and a run in time."""
 
 
 WITHOUT = """

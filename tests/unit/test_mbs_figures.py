@@ -439,9 +439,8 @@ class TestSweepFigure:
         assert not any(bands(panel) for panel in figure.axes)
 
     @pytest.mark.slow
-    @pytest.mark.parametrize("count", [20])
-    def test_names_of_bearings_lie_off_the_curves_and_on_the_page(self, result, count):
-        of = result.bearings
+    def test_names_of_bearings_lie_off_the_curves_and_on_the_page(self, result):
+        of, count = result.bearings, 20
         wide = {
             part.name: np.repeat(values[:, :1], count, axis=1)
             for part in dataclasses.fields(of)

@@ -7,7 +7,6 @@ import dataclasses
 import math
 import os
 import subprocess
-import sys
 from pathlib import Path
 from typing import NamedTuple
 
@@ -280,24 +279,3 @@ def test_a_compiled_step_without_answer_is_halved(known):
     """The spring is thrown further than it has an answer for: no step of any size leads back."""
     with pytest.raises(AnalysisError, match="no solution at"):
         run(machine(), RAMP, 1e-2, SETTINGS, velocity=np.array([1e6, 0.0, 0.0, 0.0]))
-
-
-COMPILED = """
-import dataclasses, sys
-from numba.core import event
-from mbs import assemble, parse_scene, read_scene, runup
-text = read_scene("nu308_rigid").text.replace("slices = 41", "slices = 3")
-model = assemble(parse_scene(text, "short", "short.toml"), *sys.argv[1:])
-with event.install_recorder("numba:compile") as compiled:
-    found = runup(model, dataclasses.replace(model.scene.run_up, duration=2e-4))
-print(found.dataset.sizes["time"], len(compiled.buffer))
-"""
-
-
-def test_a_run_compiles_nothing(small_map):
-    """With films with memory, which have the most code."""
-    command = [sys.executable, "-c", COMPILED, "map", small_map]
-    result = subprocess.run(command, capture_output=True, text=True, check=True)
-    count, events = map(int, result.stdout.split()[-2:])
-    assert count > 1
-    assert events == 0

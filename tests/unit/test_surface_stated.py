@@ -261,9 +261,8 @@ def test_load_sharing_says_where_it_is_out_of_its_range(tmp_path, capsys):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("surface", [Surface(1e-6), Surface(1e-9)])
-def test_the_page_of_roughness_shades_what_is_out_of_range(surface, tmp_path):
-    emap = EHDMap(dataset_of()).with_surface(surface)
+def test_the_page_of_roughness_shades_what_is_out_of_range(tmp_path):
+    emap = EHDMap(dataset_of()).with_surface(Surface(1e-6))
     plot_roughness(emap, tmp_path / "rough.svg")
     drawn = (tmp_path / "rough.svg").read_text()
-    assert ("mean planes overlap: out of the range of load sharing" in drawn) == (surface.roughness == 1e-6)
+    assert "mean planes overlap: out of the range of load sharing" in drawn

@@ -33,7 +33,7 @@ def one(*values: float) -> list[np.ndarray]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("ratio", "load", "speed"), [(1.0, 150.0, 1.0), (12.0, 300.0, 3.0), (35.0, 80.0, 8.0)])
+@pytest.mark.parametrize(("ratio", "load", "speed"), [(1.0, 150.0, 1.0), (35.0, 80.0, 8.0)])
 def test_points_are_those_of_solved_fields(ratio, load, speed):
     """The bound is that of the rule; the grid, whose error halves from the first to the second, is extrapolated."""
     ellipse = Ellipse(5e-3, 5e-3 * ratio, 230.769e9)

@@ -111,16 +111,6 @@ class TestAgainstTheDeterminant:
         inside = (size > low) & (size < high) & (angle > 0.45 * math.pi) & (angle < steepest)
         assert zeros_within(rigid, low, high, steepest) == np.count_nonzero(inside) > 0
 
-    @pytest.mark.slow
-    def test_all_modes_of_the_gearbox_are_there(self, emap):
-        balance = gearbox(emap, 500.0, "memory")
-        found = modes(balance)
-        low, high, steepest = 2.0 * math.pi * 300.0, 2.0 * math.pi * 2.2e3, 0.7 * math.pi
-        size, angle = np.abs(found.eigenvalues), np.angle(found.eigenvalues)
-        inside = (size > low) & (size < high) & (angle > 0.45 * math.pi) & (angle < steepest)
-        assert zeros_within(balance, low, high, steepest) == np.count_nonzero(inside) > 10
-        assert not found.lost
-
     def test_each_mode_makes_the_matrix_singular(self, rigid):
         found = modes(rigid)
         for value in found.eigenvalues[(found.eigenvalues.imag > 0.0) & (found.frequency > 300.0)]:

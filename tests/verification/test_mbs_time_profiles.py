@@ -145,9 +145,8 @@ def through_rest(begin, law):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("law", ["hertz:1.25e-5 s", "table"])
-def test_a_reversal_is_the_mirror_of_the_opposite_one(law):
-    one, other = through_rest(900.0, law), through_rest(-900.0, law)
+def test_a_reversal_is_the_mirror_of_the_opposite_one():
+    one, other = through_rest(900.0, "table"), through_rest(-900.0, "table")
     assert one.compiled == one.steps
     np.testing.assert_array_equal(one.speed, -other.speed)
     # In the mirror y stays, and z and the turning change their signs.

@@ -88,7 +88,7 @@ def test_edge_of_a_loaded_contact_moves_to_the_meniscus(place):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "surface", "layer"),
-    [("outer", SMOOTH, 2e-7), ("inner", SMOOTH, 2e-5), ("inner", Surface(3e-7), 1e-6)],
+    [("outer", SMOOTH, 2e-5), ("inner", Surface(3e-7), 1e-6)],
 )
 def test_laws_beyond_the_speeds_of_a_map_rise_and_are_passive(reynolds_map, kind, surface, layer):
     """To ten times the highest speed the film on a layer still thins with load, exact in its slope.
@@ -123,9 +123,9 @@ def test_a_layer_as_thick_as_the_asperities_are_high_gives_a_law_that_rises(reyn
 def test_a_grid_without_refinement_goes_on_beyond_its_speeds(solved_map):
     """Flow and film read from the grid do not go on alike by themselves: beyond it they follow the film table."""
     grid = EHDMap(open_map(solved_map).dataset)
-    for layer in (1e-6, 5e-6):
-        law = grid.law("inner", outside="asymptote", supply=OilSupply(layer))
-        delta = np.concatenate((-np.geomspace(2.5 * layer + 3e-6, 1e-9, 1500), np.geomspace(1e-9, 2e-5, 500)))
-        for speed in (5.0, 12.0, 50.0):
-            load, stiffness, damping = law.at(speed, WARM)(delta, 0.0)
-            assert np.all(np.diff(load) >= 0.0) and np.all(stiffness >= 0.0) and np.all(damping >= 0.0)
+    layer = 1e-6
+    law = grid.law("inner", outside="asymptote", supply=OilSupply(layer))
+    delta = np.concatenate((-np.geomspace(2.5 * layer + 3e-6, 1e-9, 1500), np.geomspace(1e-9, 2e-5, 500)))
+    for speed in (5.0, 12.0, 50.0):
+        load, stiffness, damping = law.at(speed, WARM)(delta, 0.0)
+        assert np.all(np.diff(load) >= 0.0) and np.all(stiffness >= 0.0) and np.all(damping >= 0.0)

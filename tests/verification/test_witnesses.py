@@ -39,7 +39,7 @@ def test_the_printed_band_holds_what_their_maker_says() -> None:
     """Axial K with its 90 % band, as `mbs bearing` prints it: 95 % of the points are inside."""
     held = []
     every = [row for row in rows("gmn_pair_rigidity") if row["designation"][:3] != "718"]
-    for row in [*every[::9], *rows("nsk_pair_rigidity")[::9]]:
+    for row in [*every[::18], *rows("nsk_pair_rigidity")[::18]]:
         axial, choices = f"{row['preload_N']} N", {choice.key: None for choice in OPTIONS} | {"law": ["hertz"]}
         asked = {
             **dict.fromkeys(("outer_speed", "direction", "ring_temperatures", "oil", "permittivity", "output", "plot")),
@@ -50,7 +50,7 @@ def test_the_printed_band_holds_what_their_maker_says() -> None:
         band = bands_of(request, points_of(request))["stiffness_axial"]
         theirs = 0.5e6 * float(row["pair_axial_rigidity_N_per_um"])
         held.append(bool(band.low <= theirs <= band.high))
-    assert len(held) == 71
+    assert len(held) == 36
     assert np.mean(held) >= 0.95
 
 
