@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -376,39 +376,69 @@ def _line(chart: Chart, curve: Curve) -> Markup | None:
 _LETTER, _TALL = 6.2, 12.0
 """Width of a letter of a note, and height of its line [px]."""
 
+_TRIED, _LOOKED_AT = 101, 13
+"""Places along a curve at which its text is tried, and along a text at which curves are looked at."""
+
 
 def _notes(chart: Chart) -> list[Markup]:
-    """Texts of the curves, each at its last place inside the chart at which it does not lie upon another.
+    """Texts of the curves, each at its last place inside the chart where neither another text nor a curve or mark is.
 
-    Places are tried from the end of a curve back to its begin, above the line; where all are taken the text is left to
-    the legend.
+    Places are tried from the end of a curve back to its begin, above the line, then below; where another text leaves
+    none free the text is left to the legend, and where only curves do it lies upon them.
     """
     taken: list[tuple[float, float, float]] = []
     parts = []
     for curve in chart.curves:
         if not curve.note:
             continue
-        width = _LETTER * len(curve.note)
-        known = np.isfinite(curve.values)
-        if not known.any():
+        free = [place for place in _beside(chart, curve) if not _upon(place, taken)]
+        if not free:
             continue
-        # finely, for a curve of few places leaves its chart between two of them
-        places = np.linspace(chart.places[known][0], chart.places[known][-1], _TRIED)
-        values = np.interp(places, chart.places[known], curve.values[known])
-        inside = (values >= chart.y.low) & (values <= chart.y.high)
-        across, along = chart.frame.across(chart.x, places[inside]), chart.frame.along(chart.y, values[inside])
-        for x, y in zip(across[::-1] - 3.0, np.maximum(along[::-1] - 4.0, TOP + 10.0), strict=True):
-            if x - width < LEFT:
-                break
-            if all(x - width > right or x < left or abs(y - row) > _TALL for left, right, row in taken):
-                taken.append((x - width, x, y))
-                parts.append(tag("text", curve.note, x=f"{x:.1f}", y=f"{y:.1f}", text_anchor="end", class_="note"))
-                break
+        left, right, row = next((place for place in free if not _crossed(chart, curve, place)), free[0])
+        taken.append((left, right, row))
+        parts.append(tag("text", curve.note, x=f"{right:.1f}", y=f"{row:.1f}", text_anchor="end", class_="note"))
     return parts
 
 
-_TRIED = 101
-"""Places along a curve at which its text is tried."""
+def _beside(chart: Chart, curve: Curve) -> Iterator[tuple[float, float, float]]:
+    """Places of the text of a curve, last first: its left and right end and its base line [px]."""
+    width = _LETTER * len(curve.note)
+    known = np.isfinite(curve.values)
+    if not known.any():
+        return
+    # finely, for a curve of few places leaves its chart between two of them
+    places = np.linspace(chart.places[known][0], chart.places[known][-1], _TRIED)
+    values = np.interp(places, chart.places[known], curve.values[known])
+    inside = (values >= chart.y.low) & (values <= chart.y.high)
+    across, along = chart.frame.across(chart.x, places[inside]), chart.frame.along(chart.y, values[inside])
+    for x, y in zip(across[::-1].tolist(), along[::-1].tolist(), strict=True):
+        if x - 3.0 - width >= LEFT:
+            yield x - 3.0 - width, x - 3.0, max(y - 4.0, TOP + 10.0)
+        if x + 3.0 + width <= chart.frame.right and y + _TALL + 2.0 <= chart.frame.bottom:
+            yield x + 3.0, x + 3.0 + width, y + _TALL
+
+
+def _upon(place: tuple[float, float, float], taken: Sequence[tuple[float, float, float]]) -> bool:
+    """Tell whether a text lies upon another."""
+    left, right, row = place
+    return any(left <= end and right >= begin and abs(row - line) <= _TALL for begin, end, line in taken)
+
+
+def _crossed(chart: Chart, own: Curve, place: tuple[float, float, float]) -> bool:
+    """Tell whether another curve, or a mark, runs through a text."""
+    left, right, row = place
+    at = np.linspace(left, right, _LOOKED_AT)
+    across = chart.frame.across(chart.x, chart.places)
+    for curve in chart.curves:
+        along = chart.frame.along(chart.y, curve.values)
+        there = np.interp(at, across, along, np.nan, np.nan)
+        if curve is not own and np.any((there > row - _TALL) & (there < row + 3.0)):
+            return True
+    for points in chart.points:
+        x, y = chart.frame.across(chart.x, points.across), chart.frame.along(chart.y, points.along)
+        if np.any((x > left - 5.0) & (x < right + 5.0) & (y > row - _TALL - 4.0) & (y < row + 6.0)):
+            return True
+    return False
 
 
 def _marks(chart: Chart, points: Points) -> Markup | None:

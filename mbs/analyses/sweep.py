@@ -57,6 +57,9 @@ if TYPE_CHECKING:
     from mbs.unknowns.over_speed import SpeedBands
 
 
+_DRAWN = 200
+"""Parts of the range of speeds at whose ends responses to loads that turn are drawn."""
+
 _LEAST_SIZE = 1e-300
 """Of a response that has a level."""
 
@@ -522,7 +525,7 @@ def _responded(swept: _Swept, speeds: FloatArray) -> CriticalResult:
     responses: tuple[OrderResponse, ...] = ()
     if model.system.turning:
         try:
-            responses = order_responses(system_at, speeds, sweep.bearings.angles)
+            responses = order_responses(system_at, speeds, sweep.bearings.angles, _DRAWN)
         except np.linalg.LinAlgError as error:
             raise AnalysisError(
                 "responses: one of the speeds is just that of an undamped resonance, where there is none; move the "

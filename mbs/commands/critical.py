@@ -56,6 +56,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     )
     found = done.result
     banded = with_bands(arguments, []) and found[0][1].model.scene.has_bearings
+    arguments.found = None if found[1:] else found[0][1]  # for `mbs run`, whose report tells of it
     judged = Judged([(label, entry.findings) for label, entry in found])
     lines, outside = [*judged.first, *done.lines], list[str]()
     for label, entry in found:
@@ -89,7 +90,8 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
     with problems:
         cases = load_cases(arguments, most=MOST_COMPARED_CASES)
     problems.check()
-    return _Asked(cases, settings)
+    scene = cases[0].model.scene
+    return _Asked(cases, dataclasses.replace(settings, besides=(*scene.operating_range, abs(scene.speed))))
 
 
 def _outside(found: CriticalResult) -> list[str]:
@@ -108,7 +110,8 @@ def _report(found: CriticalResult, label: str, banded: bool) -> list[str]:
     return [
         *heading(model),
         *([f"  case: {label}"] if label else []),
-        f"  {swept.size} speeds from {_rpm(swept[0])} to {_rpm(np.abs(swept).max())}, {more} more around critical ones",
+        f"  {swept.size} speeds from {_rpm(swept[0])} to {_rpm(np.abs(swept).max())}, {more} more around critical ones "
+        "and of operation",
         *([] if label else _critical(found, banded)),
         *_responses(found, banded and not label),
         *line_rows(found.lines, model.scene.sensors),

@@ -42,7 +42,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Examine the scene and write the report; by default in this folder, with the name of the scene."""
     arguments.output = arguments.output or f"{Path(arguments.scene).stem}.html"
     looked: list[_Asked] = []
-    done = analysed(arguments, _asked, lambda asked: _examine(asked, looked, with_bands(arguments, [])), _looks_at)
+    done = analysed(arguments, _asked, lambda asked: _examine(asked, looked, arguments), _looks_at)
     asked = looked[-1]
     found = done.result
     saved = None if asked.saved is None else (Path(arguments.result).name, asked.saved)
@@ -75,10 +75,13 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
     return _Asked(cases[0], speeds, saved)
 
 
-def _examine(asked: _Asked, looked: list[_Asked], banded: bool) -> Examination:
+def _examine(asked: _Asked, looked: list[_Asked], arguments: argparse.Namespace) -> Examination:
     """Examine the model; what was asked last is kept, with what `--auto` chose."""
     looked.append(asked)
-    return examined(asked.case.model, _maps(asked), asked.speeds, asked.saved is None, asked.case.subject, banded)
+    one, banded = asked.case, with_bands(arguments, [])
+    # with --auto the films of the report may be others
+    known = None if arguments.auto else getattr(arguments, "found", None)
+    return examined(one.model, _maps(asked), asked.speeds, asked.saved is None, one.subject, banded, known)
 
 
 def _maps(asked: _Asked) -> MapSet | None:

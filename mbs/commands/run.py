@@ -18,6 +18,7 @@ from ehdmaps.errors import AnalysisError, EhdmapsError, InputError
 from ehdmaps.jobs.make.status import duration
 from ehdmaps.outputs import Kind, Output, check_outputs, write_text
 from ehdmaps.program import tell
+from ehdmaps.units import RPM
 from mbs.analyses.campbell import campbell_problems
 from mbs.analyses.case import Case
 from mbs.analyses.modes import modes
@@ -59,6 +60,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
                 raise
             text, found = "\n".join(f"warning: no result: {line}" for line in str(error).splitlines()), 1
         status = max(status, found)
+        if name == "critical" and REPORT in planned:
+            planned[REPORT].found = getattr(one, "found", None)  # which the report need not find again
         # The same plan, the same verdicts and the same note on films are told once.
         shown = [line for line in text.splitlines() if line not in told or not line.startswith(_TOLD_ONCE)]
         told.update(text.splitlines())
@@ -113,7 +116,8 @@ def _weights(model: Model, unknown: int) -> dict[str, float]:
     """Cost of each analysis in equilibria with their modes, fitted to the processor time of shipped machines."""
     scene = model.scene
     speeds = 0 if scene.sweep is None else scene.sweep.points
-    swept = min(speeds or MOST_SPEEDS, MOST_SPEEDS)
+    shared = speeds and any(body.spin for body in scene.bodies)  # the report has what `critical` found
+    swept = 0 if shared else min(speeds or MOST_SPEEDS, MOST_SPEEDS)
     return {
         "statics": 1.0 + 0.6 * unknown,
         "modes": 2.2,
@@ -190,6 +194,9 @@ def _words(arguments: argparse.Namespace, scene: Scene, name: str, folder: Path)
         words += ["--bands", arguments.bands]
     check_outputs([Output("-o", folder / f"{name}.txt", TEXT)])
     if name == REPORT:
+        swept = scene.sweep if "critical" in _analyses(scene) else None
+        if swept is not None:
+            words += ["--speed", *(f"{RPM.value(end):.9g} rpm" for end in (swept.begin, swept.end)), str(swept.points)]
         return [*words, "-o", str(folder / f"{name}.html")]
     # The figure of statics is one of rollers.
     figure = ["--plot", str(folder / f"{name}.png")] if name != "statics" or scene.bearings else []

@@ -9,8 +9,8 @@ their own frequency at each speed, with all of stiffness, damping, gyroscopic te
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -104,6 +104,9 @@ class OrderResponse:
         What they are loads of.
     speeds : array, shape (speeds,), or None
         Speeds [rad/s], where they are the response's own.
+    drawn_speeds, drawn_forces : array, shapes (d,), (d, elements, 2)
+        Rising speeds that lie close together [rad/s], and the forces there [N], for figures: between the speeds the
+        dynamic stiffness is linear in the speed. Empty where none were asked for.
     """
 
     order: float
@@ -113,6 +116,8 @@ class OrderResponse:
     lifting: FloatArray
     lifted: tuple[tuple[str, ...], ...]
     speeds: FloatArray | None = None
+    drawn_speeds: FloatArray = field(default_factory=lambda: np.zeros(0))
+    drawn_forces: ComplexArray = field(default_factory=lambda: np.zeros((0, 0, 2), dtype=np.complex128))
 
 
 def critical_speeds(
@@ -173,7 +178,7 @@ def critical_speeds(
 
 
 def order_responses(
-    system_at: Callable[[float], System], speeds: FloatArray, cage_angles: int = 1
+    system_at: Callable[[float], System], speeds: FloatArray, cage_angles: int = 1, drawn: int = 0
 ) -> tuple[OrderResponse, ...]:
     """Respond to the loads of a system that follow its angle, at each speed.
 
@@ -185,6 +190,8 @@ def order_responses(
         [rad/s].
     cage_angles : int
         Cage angles over which stiffness and damping are averaged.
+    drawn : int
+        Number of parts of the range of speeds at whose ends forces are found for figures; none for 0.
 
     Returns
     -------
@@ -201,19 +208,27 @@ def order_responses(
     lifts: dict[float, list[list[tuple[float, float]]]] = {}
     lifted: list[tuple[str, ...]] = []
     names: dict[float, dict[str, None]] = {}
-    start = None
+    curves: dict[float, list[tuple[float, ComplexArray]]] = {}
+    before: Equilibrium | None = None
     for speed in speeds.tolist():
+        start = None if before is None else before.displacement
         balance = mean_equilibrium(system_at(speed), Operation(speed), cage_angles, start)
-        system, start = balance.system, balance.displacement
+        system = balance.system
         rules = [(index, lifting(balance, index)) for index in system.select(OnRings)]
         lifted.append(tuple(rule.of for _, rule in rules))
         for order in _orders(system):
             loads = [load for load in system.turning if abs(load.order) == order]
             moved, felt = _answer([(1.0, balance)], order, speed)
+            if drawn:
+                curve = curves.setdefault(order, [])
+                if before is not None:
+                    curve += _between(before, balance, order, (speeds[-1] - speeds[0]) / drawn)
+                curve.append((speed, _across_axis(felt)))
             motions.setdefault(order, []).append(moved)
-            forces.setdefault(order, []).append(np.array([force[1:3] for force in felt]).reshape(-1, 2))
+            forces.setdefault(order, []).append(_across_axis(felt))
             lifts.setdefault(order, []).append([rule.worst(felt[index]) for index, rule in rules])
             names.setdefault(order, {}).update(dict.fromkeys(name for load in loads for name in load.names))
+        before = balance
     return tuple(
         OrderResponse(
             order,
@@ -222,9 +237,29 @@ def order_responses(
             np.array(forces[order]),
             np.array(lifts[order]).reshape(len(lifted), -1, 2),
             tuple(lifted),
+            None,
+            np.array([speed for speed, _ in curves.get(order, [])]),
+            np.array([np.zeros_like(forces[order][0]), *(force for _, force in curves.get(order, []))])[1:],
         )
         for order in motions
     )
+
+
+def _across_axis(felt: Sequence[ComplexArray]) -> ComplexArray:
+    """Forces of all elements along y and z, (elements, 2)."""
+    return np.array([force[1:3] for force in felt]).reshape(-1, 2)
+
+
+def _between(
+    before: Equilibrium, after: Equilibrium, order: float, step: float
+) -> Iterator[tuple[float, ComplexArray]]:
+    """Speeds at most a step apart between those of two equilibria, and the forces of an order there."""
+    low, high = before.operation.speed, after.operation.speed
+    parts = math.ceil((high - low) / step)
+    for k in range(1, parts):
+        share = k / parts
+        speed = low + share * (high - low)
+        yield speed, _across_axis(_answer([(1.0 - share, before), (share, after)], order, speed)[1])
 
 
 def orders(system: System) -> tuple[float, ...]:
@@ -315,7 +350,7 @@ def responses_between(
                     break
             found.append(best)
         motion = np.array([moved for _, moved, _ in found])
-        forces = np.array([[force[1:3] for force in felt] for _, _, felt in found]).reshape(len(found), -1, 2)
+        forces = np.array([_across_axis(felt) for _, _, felt in found])
         at = np.array([speed for speed, _, _ in found])
         responses.append(OrderResponse(order, (), motion, forces, np.zeros((len(found), 0, 2)), (), at))
     return tuple(responses)

@@ -152,6 +152,7 @@ def examined(
     swept: bool = True,
     subject: Subject | None = None,
     banded: bool = False,
+    found: CriticalResult | None = None,
 ) -> Examination:
     """Find it.
 
@@ -169,6 +170,8 @@ def examined(
         The scene with its law, of which there is an error budget, and a dry machine beside it; none if left out.
     banded : bool
         Whether bands of what is not known stand beside modes.
+    found : CriticalResult or None
+        Critical speeds over these speeds with the same law, where they are known already, with their bands.
 
     Raises
     ------
@@ -181,31 +184,12 @@ def examined(
     return Examination(
         statics(model),
         _or_reason(lambda: modes(model)),
-        _or_reason(lambda: _over_speed(model, speeds)) if swept else "",
+        _or_reason(lambda: _over_speed(model, speeds, found)) if swept else "",
         maps,
         budget,
         banded and model.scene.has_bearings,
         _or_reason(lambda: _transfer(model, subject)),
     )
-
-
-_SAMPLES = 201
-"""Times at which the speed of a run-up is looked at."""
-
-
-def operating_range(scene: Scene) -> tuple[float, float]:
-    """Lowest and highest speed of operation [rad/s]: that of the run-up and the operating speed.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    """
-    speeds = [abs(scene.speed)]
-    if scene.run_up is not None:
-        times = np.linspace(0.0, scene.run_up.duration, _SAMPLES).tolist()
-        speeds += [abs(float(scene.run_up.speed.at(time)[0])) for time in times]
-    return min(speeds), max(speeds)
 
 
 def highest_of(scene: Scene) -> float:
@@ -232,15 +216,15 @@ def speeds_of(scene: Scene) -> SweepRange | None:
     return SweepRange(_BELOW * scene.speed, _ABOVE * scene.speed, MOST_SPEEDS) if scene.speed > 0.0 else None
 
 
-def _over_speed(model: Model, speeds: SweepRange | None) -> OverSpeed:
+def _over_speed(model: Model, speeds: SweepRange | None, found: CriticalResult | None) -> OverSpeed:
     """Modes over a few speeds without frequency responses, and critical speeds where a body spins."""
     scene = model.scene
     speeds = speeds or speeds_of(scene)
     if speeds is None:
         raise AnalysisError("the scene stands still and has no [sweep]; --speed gives speeds")
-    found: CriticalResult | None = None
-    if any(body.spin for body in scene.bodies):
-        found = critical(model, SweepSettings(speeds, besides=(*operating_range(scene), abs(scene.speed))))
+    if found is None and any(body.spin for body in scene.bodies):
+        found = critical(model, SweepSettings(speeds, besides=(*scene.operating_range, abs(scene.speed))))
+    if found is not None:
         swept, findings = found.sweep, found.findings
     else:
         bare = dataclasses.replace(model, scene=dataclasses.replace(scene, frequencies=()))

@@ -14,11 +14,10 @@ from ehdmaps.report.chart import WIDE, Chart, Curve, Shade, figure, number, show
 from ehdmaps.report.page import Markup, joined, table, tag
 from ehdmaps.units import MOTIONS, RPM
 from mbs.analyses.sweep import CriticalResult
-from mbs.linearised.critical import CLOSE, CriticalSpeed
+from mbs.linearised.critical import CLOSE, CriticalSpeed, OrderResponse, orbit
 from mbs.linearised.linear import sensor_unit
 from mbs.linearised.mode_names import IN_A_PLANE
 from mbs.output.sweep_data import sensed
-from mbs.report.examination import operating_range
 from mbs.scene.fields import FORCE
 
 _BAND = "90 % of what is not known"
@@ -67,7 +66,7 @@ def critical_table(found: CriticalResult, names: Sequence[str], banded: bool = F
     banded : bool
         Whether bands of what is not known stand beside the speeds.
     """
-    low, high = operating_range(found.model.scene)
+    low, high = found.model.scene.operating_range
     end = float(np.abs(found.sweep.speeds).max())
     span = f"{_rpm(low)} to {_rpm(high)}" if high > low else _rpm(high)
     looked = f"Speeds up to {_rpm(end)} were looked at; operation is {span}."
@@ -146,7 +145,7 @@ def unbalance_parts(found: CriticalResult, banded: bool = False) -> Markup:
     system, sensors, speeds = found.model.system, found.model.scene.sensors, np.abs(found.speeds)
     if not found.responses:
         return tag("p", "The scene has no unbalance and no load that turns.")
-    low, high = operating_range(found.model.scene)
+    low, high = found.model.scene.operating_range
     speed = abs(found.model.scene.speed)
     inside = np.flatnonzero((speeds >= low) & (speeds <= high))
     parts: list[Markup] = []
@@ -180,7 +179,7 @@ def unbalance_parts(found: CriticalResult, banded: bool = False) -> Markup:
         words = f"Order {number(response.order, 4)}: {', '.join(response.names)}; amplitudes"
         parts += [
             table(heads, rows, words, tuple(range(len(heads)))),
-            _chart(row, response.order, speeds, curves, found),
+            _chart(row, response, found),
         ]
     return joined(*parts)
 
@@ -190,12 +189,16 @@ def _within(speed: float, speeds: FloatArray) -> bool:
     return bool(speeds[0] <= speed <= speeds[-1])
 
 
-def _chart(
-    row: int, order: float, speeds: FloatArray, curves: Sequence[tuple[str, object, FloatArray]], found: CriticalResult
-) -> Markup:
+def _chart(row: int, response: OrderResponse, found: CriticalResult) -> Markup:
     """Forces over speed."""
-    forces = [(name, values) for name, display, values in curves if display is FORCE][: len(COLOURS)]
-    low, high = operating_range(found.model.scene)
+    speeds, every = response.drawn_speeds, orbit(response.drawn_forces[..., 0], response.drawn_forces[..., 1])[0]
+    forces = [
+        (f"force on {connected.element.name}", every[:, k])
+        for k, connected in enumerate(found.model.system.elements)
+        if every[:, k].max(initial=0.0) > 0.0
+    ][: len(COLOURS)]
+    low, high = found.model.scene.operating_range
+    order = response.order
     everything = np.concatenate([values for _, values in forces]) if forces else np.ones(1)
     chart = Chart(
         f"unbalance-{row + 1}",

@@ -47,6 +47,10 @@ _SEQUENCES = (
 )
 
 
+_LOOKED_AT = 200
+"""Parts of a run-up at whose ends its speed is looked at."""
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Scene:
     """All that a scene file says; it may be made without one.
@@ -201,6 +205,15 @@ class Scene:
         swept = self.sweep.speeds.tolist() if self.sweep else []
         run = self.run_up.speed.course.values if self.run_up else ()
         return max(abs(float(speed)) for speed in (self.speed, *swept, *run))
+
+    @property
+    def operating_range(self) -> tuple[float, float]:
+        """Lowest and highest speed of operation [rad/s]: that of the run-up and the operating speed."""
+        speeds = [abs(self.speed)]
+        if self.run_up is not None:
+            times = (self.run_up.duration * k / _LOOKED_AT for k in range(_LOOKED_AT + 1))
+            speeds += [abs(float(self.run_up.speed.at(time)[0])) for time in times]
+        return min(speeds), max(speeds)
 
     @property
     def weight(self) -> str:

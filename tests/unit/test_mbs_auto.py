@@ -133,6 +133,21 @@ def test_a_decibel_is_twelve_per_cent():
     assert read() is None
 
 
+def test_the_report_of_a_run_has_what_critical_found(file, capsys, tmp_path, monkeypatch):
+    """Speeds and bands are not found again, and the report says by which speeds."""
+    without_budget(monkeypatch)
+
+    def again(*_):
+        raise AssertionError("critical speeds were found again")
+
+    monkeypatch.setattr("mbs.report.examination.critical", again)
+    text = Path(file).read_text() + '[sweep]\nfrom = "500 rpm"\nto = "1500 rpm"\npoints = 3\n'
+    (tmp_path / "swept.toml").write_text(text)
+    status, out, _ = run(capsys, "run", "swept.toml", "--law", "hertz", "-o", "out")
+    assert (status, "=== mbs critical" in out) == (0, True)
+    assert "--speed &#x27;500 rpm&#x27; &#x27;1500 rpm&#x27; 3" in (tmp_path / "out" / "report.html").read_text()
+
+
 def test_run_does_what_the_scene_has_tables_for(file, capsys, tmp_path, monkeypatch):
     without_budget(monkeypatch)
     status, out, err = run(capsys, "run", file, "--auto", "-o", "out")

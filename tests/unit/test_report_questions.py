@@ -17,7 +17,7 @@ from mbs.linearised.critical import CriticalSpeed
 from mbs.linearised.mode_names import mode_names, ordinal
 from mbs.model.body import Inertia
 from mbs.report.campbell import _names
-from mbs.report.examination import Examination, operating_range
+from mbs.report.examination import Examination
 from mbs.report.safety import safety_of
 from mbs.report.sketch import ring_of, sketch
 from mbs.report.solid import dressed
@@ -99,7 +99,7 @@ def test_the_margin_of_api_617():
 
 
 def test_critical_speeds_stand_beside_operation(model):
-    assert operating_range(model.scene) == pytest.approx((100.0 * math.pi,) * 2)
+    assert model.scene.operating_range == pytest.approx((100.0 * math.pi,) * 2)
     speeds = np.array([900.0, 2900.0, 3000.0, 4500.0]) * math.pi / 30.0
     found = [CriticalSpeed(1.0, s, complex(-1e-3 * s, s), math.nan, 0) for s in speeds.tolist()]
     result = SimpleNamespace(model=model, found=found, sweep=SimpleNamespace(speeds=np.array([0.0, 600.0])))
@@ -154,6 +154,17 @@ def test_texts_of_curves_stand_apart():
     for i, (left, right, y) in enumerate(boxes):
         assert left > 0.0
         assert all(right < a or left > b or abs(y - row) > 11.0 for a, b, row in boxes[:i])
+
+
+def test_a_text_of_a_curve_is_not_crossed_by_another():
+    """A flat curve lies where the text of a rising one would stand first; its box is 12 px high, of 6.2 px a letter."""
+    x = np.linspace(0.0, 10.0, 5)
+    curves = [Curve("", x, "#000", read=False, note="BPFO A"), Curve("", np.full(5, 10.3), "#00f", read=False)]
+    axes = linear_axis("x", "", x), linear_axis("y", "", np.array([0.0, 12.0]))
+    chart = Chart("c", "t", "", *axes, x, curves, frame=WIDE)
+    (found,) = re.findall(r'<text x="([0-9.]+)" y="([0-9.]+)" text-anchor="end" class="note">', str(drawing(chart)))
+    flat = float(WIDE.along(axes[1], np.array([10.3]))[0])
+    assert not float(found[1]) - 12.0 < flat < float(found[1]) + 3.0
 
 
 def test_names_of_one_order_share_their_word():

@@ -53,6 +53,16 @@ class TestBesideRoss:
         # Beside a resonance, 0.65 % away, an error of 4e-6 in its frequency is one of 7e-4.
         np.testing.assert_allclose(found, wanted, rtol=1e-3, atol=1e-6 * np.abs(wanted).max())
 
+    def test_forces_that_are_drawn_between_two_speeds(self, machine):
+        """By a stiffness that is the same at all speeds, gyroscopic terms and inertia they are exact to round-off."""
+        model, case, _ = machine
+        ends = np.array([case["response_speeds"][0], case["response_speeds"][-1]]) * RPM
+        (coarse,) = order_responses(lambda speed: model.system, ends, drawn=8)
+        (fine,) = order_responses(lambda speed: model.system, np.linspace(*ends, 9))
+        np.testing.assert_allclose(coarse.drawn_speeds, np.linspace(*ends, 9), rtol=1e-12)
+        assert np.abs(fine.forces).max() > 0.0
+        np.testing.assert_allclose(coarse.drawn_forces, fine.forces, atol=1e-7 * np.abs(fine.forces).max())
+
 
 MASS, STIFFNESS, DAMPING = 2.0, 2e5, 40.0
 NATURAL = math.sqrt(STIFFNESS / MASS)
