@@ -27,7 +27,7 @@ SHORTER = (
 DRY = ("gearbox", "n1014_rigid", "nu2210_shaft", "overhung_rotor", "spindle", "two_stage")
 """Scenes whose bearings others have too, with films: `nu308_flexible`, `electric_drive`, `n1014_testrig`."""
 
-BUDGETS = ("n1014_testrig",)
+BUDGETS = ("nu308_rigid",)
 """The scene whose page has an error budget, with a law for each of its lines."""
 
 

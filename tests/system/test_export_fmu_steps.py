@@ -49,9 +49,9 @@ def sliced(small_map):
     return BearingForce(Bearing(geometry, slices=SLICES), emap.law("series"))
 
 
-@pytest.mark.parametrize("fmi", ["2", "3"])
 @pytest.mark.parametrize(
-    ("frequency", "steps"), [(300.0, (9, 10, 50)), (1e3, (1, 9, 10, 20, 50)), (3e3, (1, 9, 10, 20, 50))]
+    ("fmi", "frequency", "steps"),
+    [("2", 300.0, (9, 10, 50)), ("3", 1e3, (1, 9, 10, 20, 50)), ("2", 3e3, (1, 9, 10, 20, 50))],
 )
 def test_stiffness_and_damping_over_step_and_frequency(units, fmi, frequency, steps):
     """With velocities a unit in steps of 1 to 50 us is as stiff and damps as its own differential equation says.
