@@ -101,7 +101,11 @@ def _width(key):
         ("NU309EMC3", "NU309 C3", "EM: reinforced, as tables here have it, and its cage; C3"),
         ("NCF 3010 CV", "NCF3010", "CV: full complement"),
         ("32210-XL", "32210", "XL: quality of the maker"),
-        ("FAG NU208-E-XL-TVP2", "NU208", "E: reinforced, as tables here have it, and its cage; XL: quality"),
+        (
+            "FAG NU208-E-XL-TVP2",
+            "NU208",
+            "FAG: name of the maker; E: reinforced, as tables here have it, and its cage; XL: quality",
+        ),
     ],
 )
 def test_each_part_of_a_designation_is_told(typed, name, told):

@@ -71,7 +71,7 @@ _ISO_NAMES = {"68": "618", "69": "619", "78": "718", "79": "719", "52": "32", "5
 _OF_GMN = re.compile(r"^S ?6(0|2|18|19) ?(\d\d) ?([CE])(?![0-9])")
 """Spindle bearings of GMN: S 6014 C is a 7014C, E has 25 degrees."""
 
-MAKER = re.compile(r"^(?:SKF|SNFA|FAG|INA|Schaeffler|NSK|NTN|SNR|Koyo|JTEKT|Nachi|Timken|GMN)[ -]+(?=.)", re.IGNORECASE)
+MAKER = re.compile(r"^(SKF|SNFA|FAG|INA|Schaeffler|NSK|NTN|SNR|Koyo|JTEKT|Nachi|Timken|GMN)[ -]+(?=.)", re.IGNORECASE)
 """Name of a maker before a designation, which decides nothing."""
 
 _OF_SPINDLES = ("B", "HCB", "XCB")
@@ -152,7 +152,8 @@ def read_designation(text: str) -> Designation | None:
     ['7005C', '7014C HC', '7014AC HC', '71914C']
     >>> read_designation("22208")
     """
-    upper = _OF_GMN.sub(r"B7\1\2\3", MAKER.sub("", text.strip()).upper())
+    maker, rest = MAKER.match(text.strip()), MAKER.sub("", text.strip())
+    upper = _OF_GMN.sub(r"B7\1\2\3", rest.upper())
     if len(upper) > _LONGEST:
         return None
     for row, pattern in _PATTERNS:
@@ -174,7 +175,8 @@ def read_designation(text: str) -> Designation | None:
         if kind in BALLS:  # names of makers, and those of ISO
             parts[0] = _ISO_NAMES.get(parts[0], parts[0])
         within = [Affix(inside, _WITHIN[inside], "")] if inside in _WITHIN else []
-        affixes = (*([first] if first else []), *within, *last)
+        whose = [Affix(maker[1], "name of the maker", "")] if maker else []
+        affixes = (*whose, *([first] if first else []), *within, *last)
         named = [one.text for one in affixes if one.effect == CLEARANCE]
         classes = dict.fromkeys(
             "C" + "".join(found.groups("")) if (found := _CLASS.fullmatch(one)) else one for one in named
