@@ -125,7 +125,7 @@ def quantity(text: object, unit: str) -> float:
 
 
 def quantity_within(text: object, unit: str, low: float, high: float, wrong: str) -> float:
-    """Read a number with its unit that has to lie within limits.
+    """Read a number with its unit within limits, of which one sentence says all that may be wrong.
 
     Parameters
     ----------
@@ -144,12 +144,9 @@ def quantity_within(text: object, unit: str, low: float, high: float, wrong: str
         With that text.
     """
     try:
-        value = quantity(text, unit)
+        return quantity_between(text, unit, low, high, Display(unit))
     except InputError as error:
         raise InputError(wrong) from error
-    if not low <= value <= high:
-        raise InputError(wrong)
-    return value
 
 
 _ROUND_OFF = 1e-12
