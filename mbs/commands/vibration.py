@@ -107,7 +107,7 @@ def run_vibration(arguments: argparse.Namespace, keys: str, family: Family) -> t
         "(ISO 15242; bending of the ring, cage, seals and dirt are not there)",
         f"radial velocity of the outer ring, rms, um/s, {'least to largest over ' if several else ''}{oil} at "
         + ", ".join(TEMPERATURE.text(kelvin) for kelvin in given["temperatures"])
-        + (f" and clearances of {', '.join(plays)}" if plays else ""),
+        + (f" and clearance{'s' if plays[1:] else ''} of {', '.join(plays)}" if plays else ""),
         f"  {'':26s}" + "".join(f"{f'{low:.0f} to {high:.0f} Hz':>22s}" for low, high in BANDS),
     ]
     for law in given["laws"]:

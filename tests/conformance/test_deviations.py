@@ -106,6 +106,18 @@ def test_small_approaches_are_felt_as_they_are(kind):
 
 
 @pytest.mark.parametrize("kind", ROLLING, ids=lambda kind: kind.name)
+def test_statics_are_those_of_perfect_bearings(kind):
+    """To the last bit."""
+    text = kind.text((300.0, -2000.0, 150.0))
+    perfect = assemble(parse_scene(text, "machine", "machine.toml"), "hertz:1.25e-5 s")
+    ours, theirs = (equilibrium(one.system, one.operation) for one in (model_of(kind, "hertz:1.25e-5 s"), perfect))
+    np.testing.assert_array_equal(ours.displacement, theirs.displacement)
+    for one, other in zip(ours.forces, theirs.forces, strict=True):
+        np.testing.assert_array_equal(one, other)
+    np.testing.assert_array_equal(ours.stiffness, theirs.stiffness)
+
+
+@pytest.mark.parametrize("kind", ROLLING, ids=lambda kind: kind.name)
 def test_orders_of_the_bearings_are_drawn_and_searched(kind):
     """Those of rolling without slip by the geometry: cage, passes of both rings, both contacts of an element."""
     model = model_of(kind, "hertz:1.25e-5 s")
