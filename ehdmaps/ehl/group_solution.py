@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
 from ehdmaps.ehl.grid import zone_width
 from ehdmaps.ehl.limits import Resolution
@@ -16,7 +17,7 @@ from ehdmaps.ehl.newton import CONVERGED, STAGNATED
 from ehdmaps.ehl.profile import Profile, front, front_node
 from ehdmaps.ehl.warm_response import WarmLinearisation, warm_linearised
 from ehdmaps.ehl.ways import LOAD
-from ehdmaps.physics.isotherm import log_viscosity
+from ehdmaps.physics.isotherm import Isotherm, log_viscosity
 from ehdmaps.physics.rheology import LIMITING, NEWTONIAN
 from ehdmaps.physics.solution import UNKNOWN, Estimate, peak_sampling_error
 
@@ -72,6 +73,11 @@ a third of what gives a spike cells of its own, see `Resolution.spike_steepness`
 YIELDS, PLUG = 0.99, 0.8
 """Part of its limiting stress from which on oil counts as yielding by sliding, and part of the load carried by such oil
 from which on a film counts as a plug. Film offsets of plugs have orders of 2.3 to 4, others of thin films four."""
+
+_log_viscosity = njit(log_viscosity)
+
+_TIPS = 199
+"""Steps up to `MOST_TIP` between which ln eta is taken as straight."""
 
 MOST_TIP = 5.0
 """Pressure of a tip over that of its cell to which an estimate goes: an oil with a largest viscosity has no limit."""
@@ -402,14 +408,26 @@ def tip_pressure(profile: Profile) -> float:
     profile : Profile
         A solution with a spike.
     """
-    pressure, x = profile.pressure, profile.grid.x
-    cell = profile.front_cell
-    top = max(cell - 2, 1) + int(np.argmax(pressure[max(cell - 2, 1) : cell + 2]))
-    law = profile.problem.isotherm
-    log_eta = float(log_viscosity(law, float(pressure[top]))[0])
-    squared = math.pi * profile.problem.wedge / float(profile.film[top]) ** 3 * float(x[top + 1] - x[top]) ** 2
-    above = float(pressure[top]) * np.linspace(1.0, MOST_TIP, 200)
-    return float(np.interp(2.0 * log_eta + math.log(squared), log_viscosity(law, above)[0], above))
+    law, wedge = profile.problem.isotherm, profile.problem.wedge
+    return float(_tip(law, wedge, profile.pressure, profile.grid.x, profile.film, profile.front_cell))
+
+
+@njit
+def _tip(law: Isotherm, wedge: float, pressure: FloatArray, x: FloatArray, gap: FloatArray, cell: int) -> float:
+    """The same in arrays: the pressure at which ln eta is what it asks for."""
+    first = max(cell - 2, 1)
+    top = first + np.argmax(pressure[first : cell + 2])
+    highest: float = pressure[top]
+    below = value = _log_viscosity(law, highest)[0]
+    width = x[top + 1] - x[top]
+    wanted = 2.0 * value + math.log(math.pi * wedge / gap[top] ** 3 * width * width)
+    for k in range(_TIPS):
+        value = _log_viscosity(law, highest * (1.0 + (MOST_TIP - 1.0) * (k + 1) / _TIPS))[0]
+        if value >= wanted:
+            share: float = k + max(wanted - below, 0.0) / (value - below)
+            return highest * (1.0 + (MOST_TIP - 1.0) * share / _TIPS)
+        below = value
+    return highest * MOST_TIP
 
 
 def _rolling_error(fine: Profile, coarse: Profile) -> float:

@@ -1,6 +1,6 @@
 """Full Newton for the discrete contact: dense Jacobian, rows scaled, steps limited in ln eta, film kept positive.
 
-Steps of a Newtonian film that are small are followed by chords, which solve with the factors that are there already.
+Full steps of a Newtonian film are followed by chords, which solve with the factors that are there already.
 """
 
 from __future__ import annotations
@@ -49,11 +49,16 @@ more than the oil bears asks for flows of any size."""
 SOFT_ABOVE = 1e-4
 """Size of the last step above which the tangents of an oil that yields are soft, see `shear_factors`."""
 
-CHORD_BELOW = 1e-2
-"""Size of a full step below which the matrix behind it goes on to serve: by chords, a tenth of a Newton step each."""
+LARGEST_BEFORE = 0.3
+"""Size as which a larger full step counts for the chords behind it: most of such a step is a film that moves as a
+whole, of which the equations are linear. A chord takes a tenth to a third of the time of a Newton step."""
 
-SHRINKING = 0.1
-"""Part of the step before that a chord may be at most; where chords shrink less, Newton goes on with a matrix anew."""
+CHORDS_FROM = 1e-3
+"""Largest tolerance with chords: where the place of a spike is still being looked for, Newton's own steps decide it."""
+
+SHRINKING, MOST_CHORDS = 0.3, 12
+"""Part of the step before that a chord may be at most, and chords after one full step, which is counted with them;
+where they shrink less, Newton goes on with a matrix anew."""
 
 CONVERGED, STAGNATED, DIVERGED = 0, 1, 2
 
@@ -174,6 +179,28 @@ def relaxed(move: FloatArray, old: FloatArray, before: float) -> float:
 
 
 @njit
+def _secant(moves: FloatArray, chord: FloatArray) -> FloatArray:
+    """A chord with what the moves before it, each as long as such a chord, have shown of the matrix: Broyden's.
+
+    C. T. Kelley, Solving Nonlinear Equations with Newton's Method, SIAM 2003, section 4.1.
+    """
+    last = moves.shape[0] - 1
+    for k in range(last):
+        chord = chord + _along(moves[k], chord) * moves[k + 1]
+    return chord / (1.0 - _along(moves[last], chord))
+
+
+@njit(error_model="numpy")
+def _along(move: FloatArray, chord: FloatArray) -> float:
+    """Part of a chord that goes along a move."""
+    along = squared = 0.0
+    for i in range(move.size):
+        along += move[i] * chord[i]
+        squared += move[i] * move[i]
+    return along / squared
+
+
+@njit
 def newton(
     problem: LineProblem,
     x: FloatArray,
@@ -209,7 +236,7 @@ def newton(
     n = size - 2
     unknowns = lifted(x, kernel, start)
     out = np.empty(size)
-    jacobian, scratch = np.empty((size, size)), np.empty((1, size))
+    jacobian, scratch, moves = np.empty((size, size)), np.empty((1, size)), np.empty((MOST_CHORDS, size))
     last, relaxation = math.inf, 1.0
     yields = problem.shear.form != NEWTONIAN
     old = np.zeros(n - 1)
@@ -232,16 +259,17 @@ def newton(
         unknowns = unknowns + length * move
         if length == 1.0 and last < tolerance:
             return NewtonResult(unknowns, CONVERGED, count + 1, last)
-        if length < 1.0 or last > CHORD_BELOW or yields:
+        if length < 1.0 or yields or tolerance > CHORDS_FROM:
             continue
-        before = last
-        while True:
+        before = min(last, LARGEST_BEFORE)
+        put(move, moves[0])
+        for k in range(1, MOST_CHORDS):
             residual_with(problem, factors, x, step, face_step, kernel, unknowns, load, out, scratch)
-            move = solved(matrix, -out)
-            chord = step_size(unknowns, move)
+            put(_secant(moves[:k], solved(matrix, -out)), moves[k])
+            chord = step_size(unknowns, moves[k])
             if not chord <= SHRINKING * before:
                 break
-            unknowns = unknowns + move
+            unknowns = unknowns + moves[k]
             # what is left, if the next chords shrink as this one did
             if chord * chord < tolerance * tolerance * before:
                 return NewtonResult(unknowns, CONVERGED, count + 1, chord)

@@ -148,17 +148,16 @@ def film(x: FloatArray, kernel: FloatArray, unknowns: FloatArray) -> FloatArray:
 
 
 @njit
-def _bend(d: float) -> tuple[float, float]:
-    """Weight r of a bend of ln eta in the mean of 1/eta, and its derivative; d is the step of ln eta.
+def _bend(d: float, e: float) -> tuple[float, float]:
+    """Weight r of a bend of ln eta in the mean of 1/eta, and its derivative; d is the step of ln eta, e = exp(-d).
 
     r = Int t (1 - t) exp(-d t) dt/Int exp(-d t) dt over 0 < t < 1, which is even in d.
     """
     if abs(d) < 0.1:
         return 1.0 / 6.0 - d * d / 360.0 + d**4 / 15120.0, -d / 180.0 + d**3 / 3780.0
-    e = math.exp(-abs(d))
-    cotangent = (1.0 + e) / (1.0 - e)  # coth |d|/2
-    r = cotangent / abs(d) - 2.0 / (d * d)
-    slope = 0.5 * (1.0 - cotangent * cotangent) / d - cotangent / (d * abs(d)) + 4.0 / d**3
+    cotangent = (1.0 + e) / (1.0 - e)  # coth d/2
+    r = cotangent / d - 2.0 / (d * d)
+    slope = 0.5 * (1.0 - cotangent * cotangent) / d - cotangent / (d * d) + 4.0 / d**3
     return r, slope
 
 
@@ -186,15 +185,15 @@ def cell_means(
         rho, rho_slope = _density(problem.isotherm, halfway)
         middle, middle_slope = log_eta - math.log(rho), eta_slope - rho_slope / rho
         d = min(300.0, max(-300.0, kinematic[f + 1] - kinematic[f]))
+        e = math.exp(-d)
         if abs(d) > 1e-2:
-            e = math.exp(-d)
             phi = (1.0 - e) / d
             dphi = (e * (d + 1.0) - 1.0) / (d * d)
         else:
             phi = 1.0 - 0.5 * d + d * d / 6.0 - d**3 / 24.0
             dphi = -0.5 + d / 3.0 - d * d / 8.0
         bend = 4.0 * (kinematic[f] + kinematic[f + 1]) - 8.0 * middle
-        weight, weight_slope = _bend(d)
+        weight, weight_slope = _bend(d, e)
         by_step = dphi / phi + 0.5 * bend * weight_slope
         means[f] = math.exp(0.5 * bend * weight - kinematic[f]) * phi
         left[f] = 2.0 * weight * (slope[f] - middle_slope) - slope[f] * (1.0 + by_step)

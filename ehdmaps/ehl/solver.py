@@ -284,9 +284,10 @@ class ReynoldsSolver(ContactSolverDefaults):
     ) -> Iterator[tuple[FilmSolution, GroupSolution | None]]:
         """Films at each load, each from the one before it, with their solutions in groups."""
         previous: Profile | None = None
+        state = lubricant.at(temperature) if loads and entrainment_speed != 0.0 else None
         for load in loads:
             point = OperatingPoint(load, entrainment_speed, temperature)
-            film, groups = self._solve(contact, lubricant, point, previous)
+            film, groups = self._solve(contact, lubricant, point, previous, state)
             previous = previous if groups is None else groups.profile
             yield film, groups
 
@@ -415,14 +416,19 @@ class ReynoldsSolver(ContactSolverDefaults):
             )
 
     def _solve(
-        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, previous: Profile | None
+        self,
+        contact: LineContact,
+        lubricant: Lubricant,
+        point: OperatingPoint,
+        previous: Profile | None,
+        known: LubricantState | None = None,
     ) -> tuple[FilmSolution, GroupSolution | None]:
-        """One point, and its solution in groups where it was solved."""
+        """One point, and its solution in groups where it was solved; `known` is the oil there, where it is known."""
         load, speed = point.load, point.entrainment_speed
         peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
         if speed == 0.0:
             return dry_film(peak, "no entrainment: dry contact"), None
-        state = lubricant.at(point.temperature)
+        state = known or lubricant.at(point.temperature)
         problem, M, L = self._problem(contact, lubricant, point, state)
         beyond = _beyond_reach(peak, M, L)
         if beyond:

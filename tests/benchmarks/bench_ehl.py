@@ -5,7 +5,7 @@ Run: python -m tests.benchmarks.bench_ehl [--points N] [--beside TREE]
 One process, one thread. Points are drawn along load lines of the NU308 map, as a sweep solves them. Errors are against
 four times the default density of cells. The plain solvers get the same grid and the same start
 (the interpolated coarse solution), and solve the fine grid's equations only: no linear response, no coarse grid, no
-estimate. --beside TREE has the same lines solved in turn by another checkout of this project and by this one: ratio of
+estimate. --beside TREE has `JOBS` solved in turn by another checkout of this project and by this one: ratio of
 processor times, and the largest difference of any number from the largest of its kind.
 """
 
@@ -20,6 +20,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.optimize import fsolve
@@ -147,14 +148,32 @@ def scipy_fsolve(problem: LineProblem, profile: Profile, start: np.ndarray) -> n
     return np.asarray(fsolve(equations, start, xtol=1e-9))
 
 
-def lines(points: int) -> list[tuple[tuple[float, ...], float, float]]:
-    """Load lines of the NU308 map, so many that they hold about `points` points."""
+def lines(
+    points: int,
+    a_line: int = 25,
+    loads: tuple[float, float] = (1e2, 1e6),
+    speeds: tuple[float, float] = (0.05, 10.0),
+    celsius: tuple[float, float] = (20.0, 120.0),
+) -> list[tuple[tuple[float, ...], float, float]]:
+    """Load lines of the NU308 map, so many that they hold about `points` points, or of a part of it."""
     rng = np.random.default_rng(3)
-    count = max(1, round(points / 25))
-    loads = tuple(float(w) for w in np.geomspace(1e2, 1e6, 25))
-    return [
-        (loads, float(10 ** rng.uniform(np.log10(0.05), 1.0)), float(rng.uniform(293.15, 393.15))) for _ in range(count)
-    ]
+    count = max(1, round(points / a_line))
+    line = tuple(float(w) for w in np.geomspace(*loads, a_line))
+    low, high = np.log10(speeds)
+    return [(line, float(10 ** rng.uniform(low, high)), float(273.15 + rng.uniform(*celsius))) for _ in range(count)]
+
+
+JOBS: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
+    "lines of the map": ({}, {}),
+    "thin films": ({"loads": (3e4, 1e6), "speeds": (0.05, 0.3), "celsius": (80.0, 120.0)}, {}),
+    "thick films": ({"loads": (1e2, 1e4), "speeds": (3.0, 10.0), "celsius": (20.0, 60.0)}, {}),
+    "cold, high loads": ({"loads": (1e5, 1e6), "speeds": (0.3, 10.0), "celsius": (0.0, 20.0)}, {}),
+    "5 loads a line": ({"a_line": 5}, {}),
+    "100 loads a line": ({"a_line": 100}, {}),
+    "limiting stress": ({}, {"shear": "limiting"}),
+    "sliding": ({}, {"slide_to_roll": 0.1}),
+}
+"""Arguments of `lines` and settings of the solver, for --beside."""
 
 
 def errors(solver: ReynoldsSolver, sample: list[tuple[tuple[float, ...], float, float]]) -> str:
@@ -182,19 +201,20 @@ def errors(solver: ReynoldsSolver, sample: list[tuple[tuple[float, ...], float, 
 
 
 def _best(run: Callable[[], object]) -> float:
-    """Shortest of three times [s]: shared machines are slow now and then, never fast."""
+    """Shortest of three processor times [s]: shared machines are slow now and then, never fast."""
     times = []
     for _ in range(3):
-        started = time.perf_counter()
+        started = time.process_time()
         run()
-        times.append(time.perf_counter() - started)
+        times.append(time.process_time() - started)
     return min(times)
 
 
 def solve_in_turn(points: int) -> None:
-    """Solve the lines once for each line of the input: their processor time [s] and films, pickled, as answer."""
-    sample, solver = lines(points), ReynoldsSolver()
-    for _ in sys.stdin:
+    """Solve a job for each name in the input: its processor time [s] and its films, pickled, as answer."""
+    for name in sys.stdin:
+        where, settings = JOBS[name.strip()]
+        sample, solver = lines(points, **where), ReynoldsSolver(**settings)
         begun = time.process_time()
         films = [film for line in sample for film in solver.solve_line(CONTACT, OIL, *line)]
         seconds = time.process_time() - begun
@@ -203,7 +223,7 @@ def solve_in_turn(points: int) -> None:
         sys.stdout.buffer.flush()
 
 
-def beside(tree: Path, points: int, rounds: int = 8) -> None:
+def beside(tree: Path, points: int, rounds: int = 9) -> None:
     """Print how much longer another checkout takes for the same lines, and how far its numbers are."""
     runs: list[subprocess.Popen[bytes]] = []
     for place in (tree.resolve(), Path(__file__).parents[2]):
@@ -211,24 +231,31 @@ def beside(tree: Path, points: int, rounds: int = 8) -> None:
         command = [sys.executable, "-P", __file__, "--points", str(points), "--in-turn"]
         runs.append(subprocess.Popen(command, cwd=place, env=environment, stdin=-1, stdout=-1))
 
-    def asked(run: subprocess.Popen[bytes]) -> tuple[float, list[dict[str, float]]]:
+    def asked(run: subprocess.Popen[bytes], name: str) -> tuple[float, list[dict[str, float]]]:
         assert run.stdin is not None and run.stdout is not None
-        run.stdin.write(b"\n")
+        run.stdin.write(f"{name}\n".encode())
         run.stdin.flush()
         answer: tuple[float, list[dict[str, float]]] = pickle.load(run.stdout)
         return answer
 
-    (_, there), (_, here) = (asked(run) for run in runs)  # compiled
-    pairs = [tuple(asked(run)[0] for run in runs) for _ in range(rounds)]
+    print(
+        f"processor time of {points} points in another checkout and here, least and median ratio of {rounds} in turn;"
+    )
+    print("largest difference of a number and of a stated error, from the largest of its kind")
+    print(f"{'':20s}  s there   s here   ratio   number    error")
+    for name in JOBS:
+        (_, there), (_, here) = (asked(run, name) for run in runs)  # compiled
+        pairs = [tuple(asked(run, name)[0] for run in runs) for _ in range(rounds)]
+        least = "   ".join(f"{min(times):6.3f}" for times in zip(*pairs, strict=True))
+        ratio = statistics.median(one / other for one, other in pairs)
+        apart = {False: 0.0, True: 0.0}
+        for number in there[0].keys() - {"solve_seconds"}:
+            one, other = (np.array([film[number] for film in films]) for films in (there, here))
+            away = np.nanmax(np.abs(one - other), initial=0.0) / (np.nanmax(np.abs(one), initial=0.0) or 1.0)
+            apart[number.endswith("error")] = max(apart[number.endswith("error")], float(away))
+        print(f"{name:20s}   {least}  {ratio:6.2f}  {apart[False]:7.0e}  {apart[True]:7.0e}", flush=True)
     for run in runs:
         run.communicate()
-    ratio = statistics.median(one / other for one, other in pairs)
-    least = " s there, ".join(f"{min(times):.3f}" for times in zip(*pairs, strict=True))
-    print(f"processor time of {points} points: {least} s here; ratio {ratio:.2f}, median of {rounds} in turn")
-    for name in sorted(there[0].keys() - {"solve_seconds"}):
-        one, other = (np.array([film[name] for film in films]) for films in (there, here))
-        apart = np.nanmax(np.abs(one - other), initial=0.0) / (np.nanmax(np.abs(one), initial=0.0) or 1.0)
-        print(f"  {name:24s} {apart:8.1e} of the largest")
 
 
 def main() -> None:
@@ -261,10 +288,9 @@ def main() -> None:
     for loads, speed, temperature in sample:
         for load in loads[::6]:
             problem, M, L = line_problem(CONTACT, OIL.at(temperature), load, speed)
-            half = solve_groups(problem, M, L, Resolution(density=3.25)).profile
-            fine = solve_groups(problem, M, L, Resolution(density=6.5)).profile
-            if half is not None and fine is not None and half.cells == fine.cells // 2:
-                starts.append((problem, fine, refined(half, fine.grid)))
+            found = solve_groups(problem, M, L, Resolution())
+            if found.profile is not None and found.rough is not None:
+                starts.append((problem, found.profile, refined(found.rough, found.profile.grid)))
     starts = [s for s in starts if s[1].spike is None][:12] or starts[:12]
 
     def own(problem: LineProblem, profile: Profile, start: np.ndarray) -> np.ndarray:
