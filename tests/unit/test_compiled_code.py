@@ -70,6 +70,8 @@ def test_numbers_are_no_arrays(line):
 
 def test_time_of_compiling_is_no_time_of_solving():
     """Compiling is an event of numba; the times of its listener and of the watch are those of one clock."""
+    import ehdmaps.compiled  # noqa: F401 - watches listen from its import on
+
     begin = time.process_time()
     watch = stopwatch()
     with event.trigger_event("numba:compile"):
