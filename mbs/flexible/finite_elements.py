@@ -30,7 +30,7 @@ MOST_BY_LU = 300_000
 """Degrees of freedom up to which SuperLU factorises: of more it has no memory."""
 
 MOST_FREEDOMS = 2_000_000
-"""Degrees of freedom that are taken: of a million the factor of CHOLMOD takes 3 GB where walls are thin, more else."""
+"""Degrees of freedom that are taken: of a million CHOLMOD takes gigabytes where walls are thin, more else."""
 
 COARSER = "take a coarser mesh"
 

@@ -137,7 +137,7 @@ def reduced_mesh(arguments: argparse.Namespace) -> tuple[ReductionPlan, FiniteEl
     return plan, model, reduced, lines
 
 
-_FIXED, _EACH, _TIME, _SIZE, _POWER = 0.5, 14e-6, 27.0, 39e3, 1.25
+_FIXED, _EACH, _TIME, _SIZE, _POWER = 0.5, 15.5e-6, 27.0, 39e3, 1.25
 """Memory [GB] of any body and of each degree of freedom, from boxes of 13 000 and 332 000 nodes; processor time [s] of
 the former, and a power between those of reading (1) and of factors (4/3)."""
 
