@@ -35,6 +35,12 @@ _LEAST_SHARE = 0.05
 LOPSIDED = 0.1
 """Part of the larger side of a band below which the smaller one makes no more digits."""
 
+MOST_DIGITS = 6
+"""Digits of a number whose band is narrower: no machine is known to more."""
+
+SMALL = 1e-5
+"""Size below which numbers are written with an exponent."""
+
 
 def deserved(value: float, side: float) -> str:
     """A number with two digits of a side of its band; with six digits where nothing is open.
@@ -50,6 +56,8 @@ def deserved(value: float, side: float) -> str:
     --------
     >>> deserved(268.384, 11.9), deserved(0.000923, 0.00031), deserved(21714.0, 950.0), deserved(2.5, 0.0)
     ('268', '0.00092', '21710', '2.5')
+    >>> deserved(14.99816, 1e-7), deserved(3.5204e-9, 1e-12)
+    ('14.9982', '3.5204e-09')
     """
     if not math.isfinite(value):
         return "-"
@@ -57,8 +65,11 @@ def deserved(value: float, side: float) -> str:
         return "0"
     if not (math.isfinite(side) and side > 0.0):
         return f"{value:.6g}"
-    places = 1 - math.floor(math.log10(side))
+    first = math.floor(math.log10(abs(value)))
+    places = min(1 - math.floor(math.log10(side)), MOST_DIGITS - 1 - first)
     rounded = round(value, places)
+    if rounded and abs(rounded) < SMALL:
+        return f"{rounded:.{max(places + first, 0)}e}"
     return f"{rounded:.{max(places, 0)}f}" if rounded else "0"
 
 

@@ -432,8 +432,10 @@ static int tapered(void) {
     }
     for (int64_t n = 0; memory && n < 2 * rollers; n++)
         for (int64_t i = 0; i < slices; i++) memory[(n * EHD_TAPER_MEMORY + EHD_PAIR_TIME) * slices + i] = 1.0;
-    const ehd_taper_data data = {rollers, slices, ribs, 0.03, {0.24, 0.97}, {0.18, 0.98}, 1e-6 * part(), 1e-3, 3e-2,
-                                 1e9, any() % 2 ? 10.0 : 0.0, 1e-5, rib, lever, profile, cosine, sine, NULL, NULL};
+    const int64_t held = (int64_t)((uint64_t)any() % (uint64_t)(rollers + 1));
+    const ehd_taper_data data = {rollers, slices, ribs, held, {-5e-3 * part(), 5e-3 * part()}, 0.03, {0.24, 0.97},
+                                 {0.18, 0.98}, 1e-6 * part(), 1e-3, 3e-2, 1e9, any() % 2 ? 10.0 : 0.0, 1e-5, rib, lever,
+                                 profile, cosine, sine, NULL, NULL};
     const double step = 10.0 / (double)(rows + 1);
     const ehd_pair_law line = {rows ? 1.0 : 5e8, data.damping, 1e-5, 0.0, 3e-7, -3.0, step, rows, table};
     const ehd_pair_law law[2] = {line, line};
