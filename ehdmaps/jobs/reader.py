@@ -125,6 +125,8 @@ def parse_job(
             f"{where}: is a batch file, of many jobs; allowed: one job; `ehdmaps generate`, `check` and "
             "`status` take a batch"
         )
+    if "operation" in values and "grid" not in values:
+        raise InputError(f"{where}: is a scene of mbs, no job; allowed: a job; scenes are for `mbs run`, `mbs check`")
     problems: list[str] = []
     if not name.isprintable():
         problems.append(f"is called {name!r:.80}; allowed: printable characters, which its map can carry; rename it")

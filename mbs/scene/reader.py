@@ -208,7 +208,13 @@ def parse_scene(text: str, name: str, where: str, folder: Path | None = None) ->
         With every problem found, each beginning with `where`.
     """
     problems: list[str] = []
-    values, tolerances = taken_out(table.parse(text, where), problems)
+    found = table.parse(text, where)
+    if "grid" in found and "operation" not in found:
+        raise InputError(
+            f"{where}: is a job of ehdmaps, no scene; allowed: a scene; jobs are for `ehdmaps generate`, which makes "
+            "the map of a contact; `mbs new` begins a scene"
+        )
+    values, tolerances = taken_out(found, problems)
     scene = _Reader(Table(values, "scene file", problems), folder).scene(text, name, tolerances)
     if problems or scene is None:
         raise InputError([f"{where}: {problem}" for problem in problems])

@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 from dataclasses import dataclass
+from importlib import resources
 from pathlib import Path
 
 import numpy as np
@@ -585,3 +586,12 @@ pressure_viscosity = "16.5 1/GPa"
         "  oil PAO: density -0.6 kg/m3 a K (assumed); pressure-viscosity 16.5 1/GPa at 40 degC (assumed), its change "
         "with temperature estimated by So and Klaus (1980), "
     ) in capsys.readouterr().out
+
+
+def test_a_job_is_no_scene_and_a_scene_no_job():
+    job = (resources.files("ehdmaps.jobs") / "shipped" / "nu308.toml").read_text()
+    scene = (resources.files("mbs") / "systems" / "gearbox.toml").read_text()
+    with pytest.raises(InputError, match=r"is a job of ehdmaps, no scene; .*`ehdmaps generate`"):
+        parse_scene(job, "nu308", "nu308.toml")
+    with pytest.raises(InputError, match=r"is a scene of mbs, no job; .*`mbs run`"):
+        parse_job(scene, "gearbox", "gearbox.toml")
