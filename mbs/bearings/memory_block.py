@@ -93,10 +93,10 @@ class MemoryTables(SpeedWindow):
 
 
 LATEST, CHANGE, FADE, LOAD, TRIAL, AROUND = 0, 2, 3, 4, 5, 6
-MEMORY = 23
+MEMORY = 22
 """Rows of the memory of the slices, see `ehdmaps/kernel/c/film/film_slices.c`, and how many there are."""
 
-_BEFORE, _EARLIER, _NO_CHANGE = 1, 22, 1e-30
+_BEFORE, _NO_CHANGE = 1, 1e-30
 ACCEPTED, LAST, TRIED, _STEPS = range(4)
 """Times of a run, as in `ehdmaps/kernel/c/film/film_block.c`."""
 
@@ -112,7 +112,7 @@ def resume(films: FilmState, memory: FloatArray) -> None:
         Memory of the slices; written. Parabolas are read at the next step.
     """
     memory[:] = 0.0
-    memory[[LATEST, _BEFORE, _EARLIER, TRIAL]] = films.approach.reshape(-1)
+    memory[[LATEST, _BEFORE, TRIAL]] = films.approach.reshape(-1)
     memory[CHANGE], memory[LOAD], memory[AROUND] = films.change.reshape(-1), films.load.reshape(-1), math.inf
     memory[FADE] = 1.5 / (np.abs(memory[CHANGE]) + _NO_CHANGE)
 

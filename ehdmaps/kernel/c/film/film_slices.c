@@ -19,13 +19,11 @@
 #define SLICE_TOLERANCE 3e-7
 #define SLICE_SMALL 30.0
 
-#define SLICE_EVEN 1e-6 /* part by which steps may be of other lengths that count as even */
-
 #define SLICE_ROUNDS 12
 #define SLICE_LEAST 1e-30
-#define SLICE_ROWS 23 /* of the memory */
+#define SLICE_ROWS 22 /* of the memory */
 
-/* Rows of the memory of n slices, each n numbers: states after the last three steps, change of G over the last one and
+/* Rows of the memory of n slices, each n numbers: states after the last two steps, change of G over the last one and
  * fading_of it, load after it; state of the trial; where the parabolas lie and how far they reach, in the state and in
  * the load; parabolas. G counts from the last state. */
 enum {
@@ -42,8 +40,7 @@ enum {
     AT_P,
     AT_Y = 13,
     AT_G = 16,
-    AT_A = 19,
-    AT_EARLIER = 22
+    AT_A = 19
 };
 
 /* Parabolas of a slice around the state of the trial and the last load. */
@@ -78,19 +75,16 @@ static void read_parabolas(const ehd_film_table *film, int64_t n, double *memory
     m[n * AT_LOAD_REACH] = PARABOLA_LOAD_PART * (load + 1.0) / sqrt(compliance * m[n * (AT_P + 1)] + SLICE_LEAST);
 }
 
-/* Begin a step: states are foretold, by a parabola in time where steps are even; parabolas of the law are read where they
- * are used up. growth is the length of the step by that of the last one, 0 at the first; count the number of the step; kept
- * the steps for which parabolas are kept at most. */
+/* Begin a step: states are foretold, parabolas read where they are used up. growth is the length of the step by that of
+ * the last one, 0 at the first; count the number of the step; kept the steps for which parabolas are kept at most. */
 static void begin_slices(const ehd_film_table *film, double growth, int64_t count, int64_t kept, int64_t n,
                          double *memory) {
     const double *latest = memory + n * AT_LATEST, *before = memory + n * AT_BEFORE, *load = memory + n * AT_LOAD;
     const double *around = memory + n * AT_AROUND, *reach = memory + n * AT_REACH, *loaded = memory + n * AT_LOADED;
-    const double *load_reach = memory + n * AT_LOAD_REACH, *earlier = memory + n * AT_EARLIER;
-    const double bend = fabs(growth - 1.0) < SLICE_EVEN ? 1.0 : 0.0;
+    const double *load_reach = memory + n * AT_LOAD_REACH;
     double *trial = memory + n * AT_TRIAL;
     for (int64_t i = 0; i < n; i++) {
-        const double moved = latest[i] - before[i], bent = bend * (moved - (before[i] - earlier[i]));
-        const double guess = latest[i] + growth * moved + bent;
+        const double guess = latest[i] + growth * (latest[i] - before[i]);
         trial[i] = guess > film->lift_off ? guess : film->lift_off;
         if (2.0 * fabs(trial[i] - around[i]) > reach[i] || 2.0 * fabs(load[i] - loaded[i]) > load_reach[i] ||
             (count + i) % kept == 0)
@@ -179,7 +173,6 @@ static void commit_slices(const ehd_film_table *film, int64_t n, double *memory,
         }
         m[n * AT_CHANGE] = change;
         m[n * AT_FADE] = fading_of(change);
-        m[n * AT_EARLIER] = m[n * AT_BEFORE];
         m[n * AT_BEFORE] = latest;
         m[n * AT_LATEST] = trial;
         m[n * AT_LOAD] = load[i];
