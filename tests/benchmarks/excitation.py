@@ -33,7 +33,6 @@ waviness = [{ on = "inner", waves = [2, 500], amplitude = "0.02 um", seed = 1 },
 spall = [{ on = "outer", length = "0.5 mm", depth = "20 um" }]
 """
 FILMS, DRY = "table", "hertz:1.25e-5 s"
-MEASURED = "cylindrical", "rollers as bodies", "deep groove", "tapered"
 NAMES = {FILMS: "films", DRY: "dry"}
 
 
